@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "triangle_mesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace orthopoly {
+
+/// Lists of indices, one after the other in one array (compressed rows).
+struct IndexLists {
+	/// #lists + 1
+	std::vector<Index> offsets;
+	std::vector<Index> values;
+
+	const Index* begin(Index list) const
+	{
+		return values.data() + offsets[static_cast<std::size_t>(list)];
+	}
+	const Index* end(Index list) const
+	{
+		return values.data() + offsets[static_cast<std::size_t>(list) + 1];
+	}
+	Index size(Index list) const
+	{
+		return offsets[static_cast<std::size_t>(list) + 1] - offsets[static_cast<std::size_t>(list)];
+	}
+};
+
+/// The faces around every vertex, in ascending order. A face that names a vertex twice is listed
+/// once. #V lists.
+IndexLists vertex_faces(Index vertex_count, const std::vector<Face>& faces);
+
+/// The faces that share at least one vertex with a face, itself left out, each once. #F lists.
+IndexLists face_neighbors(const std::vector<Face>& faces, const IndexLists& vertex_faces);
+
+/// #V flags: one where the vertex lies on an edge that does not belong to exactly two faces.
+std::vector<std::uint8_t> boundary_vertices(Index vertex_count, const std::vector<Face>& faces);
+
+/// Edges that belong to more than two faces, or to two faces that run along it the same way.
+Index count_non_manifold_edges(const std::vector<Face>& faces);
+
+/// Collects k-rings: breadth-first over faces that share a vertex; the face itself is ring 0 and
+/// belongs to its k-ring. Keeps scratch memory (4 bytes a face), so use one object per thread.
+class RingCollector {
+public:
+	explicit RingCollector(const IndexLists& neighbors);
+
+	/// Fills faces() with the k-ring of the face, nearest rings first.
+	void collect(Index face, int rings);
+
+	/// Adds one more ring to the one collected last.
+	void grow();
+
+	const std::vector<Index>& faces() const { return faces_; }
+	/// Number of faces within ring k (so k = 0 gives 1).
+	std::size_t count_within(int ring) const { return ends_[static_cast<std::size_t>(ring)]; }
+
+private:
+	const IndexLists& neighbors_;
+	std::vector<std::uint32_t> stamps_;
+	std::uint32_t stamp_ = 0;
+	std::vector<Index> faces_;
+	std::vector<std::size_t> ends_;
+};
+
+} // namespace orthopoly

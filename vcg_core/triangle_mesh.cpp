@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "triangle_mesh.h"
+
+#include "errors.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace orthopoly {
+
+namespace {
+
+const Point& corner(const std::vector<Point>& positions, const Face& face, std::size_t k)
+{
+	return positions[static_cast<std::size_t>(face[k])];
+}
+
+double longest_edge_squared(const std::vector<Point>& positions, const Face& face)
+{
+	const Point& a = corner(positions, face, 0);
+	const Point& b = corner(positions, face, 1);
+	const Point& c = corner(positions, face, 2);
+	return std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+}
+
+// Twice the area over the longest edge squared: below this the direction of the cross product is
+// mostly rounding of coordinates that a host may keep in single precision.
+constexpr double DEGENERATE_RATIO = 1e-14;
+
+} // namespace
+
+void validate(const TriangleMesh& mesh)
+{
+	for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+		if (!mesh.positions[i].allFinite())
+			throw InvalidMesh(
+				"vertex " + std::to_string(i) +
+				" has a coordinate that is not a finite number; remove or repair that vertex first");
+	}
+	for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+		for (const Index vertex : mesh.faces[i]) {
+			if (vertex < 0 || vertex >= mesh.vertex_count())
+				throw InvalidMesh(
+					"face " + std::to_string(i) + " has vertex index " + std::to_string(vertex) +
+					", the mesh has " + std::to_string(mesh.vertex_count()) +
+					" vertices; repair the face list first");
+		}
+	}
+	if (!mesh.fixed.empty() && mesh.fixed.size() != mesh.positions.size())
+		throw InvalidMesh(
+			"there are " + std::to_string(mesh.fixed.size()) + " fixed flags for " +
+			std::to_string(mesh.positions.size()) + " vertices; give one a vertex, or none at all");
+}
+
+Point face_cross_product(const std::vector<Point>& positions, const Face& face)
+{
+	const Point& a = corner(positions, face, 0);
+	return (corner(positions, face, 1) - a).cross(corner(positions, face, 2) - a);
+}
+
+bool is_degenerate(const std::vector<Point>& positions, const Face& face)
+{
+	// Negated, so that the answer is also true where the lengths are not numbers.
+	return !(
+		face_cross_product(positions, face).norm() >
+		DEGENERATE_RATIO * longest_edge_squared(positions, face));
+}
+
+FaceGeometry face_geometry(const std::vector<Point>& positions, const std::vector<Face>& faces)
+{
+	FaceGeometry geometry;
+	geometry.normals.resize(faces.size());
+	geometry.centroids.resize(faces.size());
+	geometry.areas.resize(faces.size());
+	for (std::size_t i = 0; i < faces.size(); ++i) {
+		const Face& face = faces[i];
+		const Point cross = face_cross_product(positions, face);
+		const double length = cross.norm();
+		geometry.areas[i] = 0.5 * length;
+		geometry.centroids[i] = (corner(positions, face, 0) + corner(positions, face, 1) +
+								 corner(positions, face, 2)) /
+			3.0;
+		geometry.normals[i] =
+			is_degenerate(positions, face) ? Point(Point::Zero()) : Point(cross / length);
+	}
+	return geometry;
+}
+
+double mean_edge_length(const std::vector<Point>& positions, const std::vector<Face>& faces)
+{
+	if (faces.empty())
+		return 0;
+	double sum = 0;
+	for (const Face& face : faces) {
+		for (std::size_t k = 0; k < 3; ++k)
+			sum += (corner(positions, face, (k + 1) % 3) - corner(positions, face, k)).norm();
+	}
+	return sum / (3.0 * static_cast<double>(faces.size()));
+}
+
+double bounding_box_diagonal(const std::vector<Point>& positions)
+{
+	if (positions.empty())
+		return 0;
+	Point low = positions.front();
+	Point high = positions.front();
+	for (const Point& point : positions) {
+		low = low.cwiseMin(point);
+		high = high.cwiseMax(point);
+	}
+	return (high - low).norm();
+}
+
+} // namespace orthopoly

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace orthopoly {
+
+/// Index of a vertex or a face. 32 bits: two thousand million faces are out of reach anyway, and
+/// the neighbour lists are half as large.
+using Index = std::int32_t;
+
+using Point = Eigen::Vector3d;
+using Face = std::array<Index, 3>;
+
+/// A triangle mesh as flat arrays: what every algorithm here works on.
+struct TriangleMesh {
+	/// #V positions, in the caller's length unit.
+	std::vector<Point> positions;
+	/// #F triples of vertex indices.
+	std::vector<Face> faces;
+	/// #V flags, or empty. A vertex whose flag is not zero keeps its position bit for bit.
+	std::vector<std::uint8_t> fixed;
+
+	Index vertex_count() const { return static_cast<Index>(positions.size()); }
+	Index face_count() const { return static_cast<Index>(faces.size()); }
+	bool is_fixed(Index vertex) const
+	{
+		return !fixed.empty() && fixed[static_cast<std::size_t>(vertex)] != 0;
+	}
+};
+
+/// Normal, centroid and area of every face, in one array a quantity (#F each).
+struct FaceGeometry {
+	/// Unit normals by the order of the vertices; zero where the face has no area.
+	std::vector<Point> normals;
+	std::vector<Point> centroids;
+	std::vector<double> areas;
+};
+
+/// Throws InvalidMesh where a face names a vertex that is not there or a coordinate is not
+/// finite, or where `fixed` is neither empty nor #V long. Faces without area, repeated faces,
+/// unreferenced vertices and non-manifold parts are fine.
+void validate(const TriangleMesh& mesh);
+
+/// Twice the area times the unit normal of a face.
+Point face_cross_product(const std::vector<Point>& positions, const Face& face);
+
+/// True where a face names a vertex twice or its area is too small for its normal to mean
+/// anything: below 1e-14 of its longest edge squared.
+bool is_degenerate(const std::vector<Point>& positions, const Face& face);
+
+/// Normals, centroids and areas of all faces, computed in one pass. #F each.
+FaceGeometry face_geometry(const std::vector<Point>& positions, const std::vector<Face>& faces);
+
+/// Mean length of the edges, every edge of every face counted (an inner edge twice); zero for a
+/// mesh without faces. All "mean edge length" units of the options mean this one.
+double mean_edge_length(const std::vector<Point>& positions, const std::vector<Face>& faces);
+
+/// Length of the diagonal of the axis-aligned box around the vertices; zero for none.
+double bounding_box_diagonal(const std::vector<Point>& positions);
+
+} // namespace orthopoly

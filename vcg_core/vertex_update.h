@@ -9,14 +9,21 @@ namespace orthopoly {
 
 /// Options of `update_vertices`.
 struct VertexUpdateOptions {
-	/// Number of steps of eq. 12; centroids are computed anew in each.
+	/// Number of steps of eq. 12, 0 or more; centroids are computed anew in each.
 	int iterations = 10;
+	/// Weight each face around a vertex by its area (at the start of each step) instead of equally
+	/// as eq. 12 is printed. Off in the paper's method.
+	bool area_weights = false;
 };
 
 /// Moves vertices towards the planes through the face centroids with the given normals (eq. 12).
 ///
+/// All vertices move at once in each step, so the result does not depend on their order. O(#F) a step.
+///
 /// @param normals   #F target unit normals; a face whose vector is zero is left out of the mean
-/// @param positions #V, moved in place; fixed vertices stay bit for bit
+/// @param positions #V, moved in place; fixed vertices, and those without a face that has a normal,
+///                  stay bit for bit
+/// Throws Cancelled; positions are then somewhere on the way.
 void update_vertices(
 	const Workspace&           workspace,
 	const std::vector<Point>&  normals,

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "prefilter.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace orthopoly {
+
+namespace {
+
+// Steps of a Taubin pair. Their pass band ends at 1/0.5 - 1/0.53 = 0.11 of the umbrella operator's
+// spectrum: waves longer than about ten edges keep their height.
+constexpr double SHRINK = 0.5;
+constexpr double INFLATE = -0.53;
+
+constexpr Index GRAIN = 2048;
+
+std::size_t at(Index index)
+{
+	return static_cast<std::size_t>(index);
+}
+
+// One umbrella step from `from` to `to`: the mean of the neighbours, each weighed by the faces shared.
+void umbrella_step(
+	const Workspace&                 workspace,
+	double                           step,
+	const std::vector<std::uint8_t>& only,
+	std::vector<Point>&              positions)
+{
+	std::vector<Point> moved(positions.size());
+	workspace.execution.parallel_for(
+		workspace.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
+			for (Index i = begin; i < end; ++i) {
+				moved[at(i)] = positions[at(i)];
+				const Index count = workspace.vertex_faces.size(i);
+				if (count == 0 || workspace.mesh.is_fixed(i) || (!only.empty() && only[at(i)] == 0))
+					continue;
+				Point sum = Point::Zero();
+				for (const Index* it = workspace.vertex_faces.begin(i);
+					 it != workspace.vertex_faces.end(i);
+					 ++it) {
+					for (const Index corner : workspace.mesh.faces[at(*it)])
+						sum += positions[at(corner)] - positions[at(i)];
+				}
+				moved[at(i)] += step / (2.0 * static_cast<double>(count)) * sum;
+			}
+		});
+	positions.swap(moved);
+}
+
+} // namespace
+
+void taubin_smooth(
+	const Workspace&                 workspace,
+	double                           pairs,
+	std::vector<Point>&              positions,
+	const std::vector<std::uint8_t>& only)
+{
+	for (double left = pairs; left > 0; left -= 1) {
+		const double share = std::min(1.0, left);
+		umbrella_step(workspace, share * SHRINK, only, positions);
+		umbrella_step(workspace, share * INFLATE, only, positions);
+	}
+}
+
+std::vector<std::uint8_t> folded_vertices(
+	const Workspace& workspace, const std::vector<Point>& positions, double cosine)
+{
+	std::vector<std::uint8_t> flags(positions.size(), 0);
+	workspace.execution.parallel_for(
+		workspace.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
+			for (Index i = begin; i < end; ++i) {
+				const Index* const first = workspace.vertex_faces.begin(i);
+				const Index* const last = workspace.vertex_faces.end(i);
+				Point mean = Point::Zero();
+				for (const Index* it = first; it != last; ++it)
+					mean += face_cross_product(positions, workspace.mesh.faces[at(*it)]);
+				const double length = mean.norm();
+				flags[at(i)] = std::any_of(first, last, [&](Index face) {
+					const Point cross = face_cross_product(positions, workspace.mesh.faces[at(face)]);
+					return cross.dot(mean) < cosine * cross.norm() * length;
+				});
+			}
+		});
+	return flags;
+}
+
+} // namespace orthopoly

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "triangle_mesh.h"
+
+#include <vector>
+
+namespace orthopoly {
+
+/// Indices of about `wanted` items, or all where there are not many more.
+///
+/// Which ones depends on the items' values (areas, say) and not on their numbers, so that a mesh with
+/// its faces in another order gives the same sample: the value's digits serve as the dice.
+/// @param values positive numbers, one an item
+std::vector<Index> sample_by_value(const std::vector<double>& values, Index wanted);
+
+/// The value below which that share (0 to 1) of the values lies; zero for none. Reorders them.
+double quantile(std::vector<double>& values, double share);
+
+} // namespace orthopoly

@@ -128,7 +128,7 @@ TEMPLATE_TEST_CASE(
 	CHECK(arrays.vertices[3] == 4);
 	for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
 		for (int k = 0; k < 3; ++k) {
-			const Index corner = arrays.mesh.faces[i][std::size_t(k)];
+			const orthopoly::Index corner = arrays.mesh.faces[i][std::size_t(k)];
 			CHECK(
 				arrays.vertices[std::size_t(corner)] ==
 				vcg::tri::Index(mesh, mesh.face[arrays.faces[i]].V(k)));

@@ -29,8 +29,8 @@ public:
 	ClosestPoint find(const Point& query) const;
 
 private:
-	class Grid;
-	std::unique_ptr<Grid> grid_;
+	class Tree;
+	std::unique_ptr<Tree> tree_;
 };
 
 } // namespace orthopoly

@@ -32,7 +32,8 @@ struct NoiseOptions {
 ///
 /// Same mesh, options and seed: same result on every platform (the generator, the transformation to a
 /// Gaussian and the order of the draws are all fixed here; the standard library's distributions
-/// are not). Throws InvalidParameter for a sigma below 0 or not finite, a share outside 0 to 1.
+/// are not). Throws InvalidParameter for an option out of its range (parameters.h), InvalidMesh for a
+/// mesh without faces, with a coordinate that is not finite or an index out of range.
 std::vector<Point> add_noise(const TriangleMesh& mesh, const NoiseOptions& options);
 
 } // namespace orthopoly

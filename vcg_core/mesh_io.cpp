@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh_io.h"
+
+#include "errors.h"
+#include "mesh_text.h"
+#include "ply_check.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <clocale>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <system_error>
+
+#include <vcg/complex/complex.h>
+
+#include <wrap/io_trimesh/export_ply.h>
+#include <wrap/io_trimesh/export_stl.h>
+#include <wrap/io_trimesh/import_ply.h>
+
+namespace orthopoly {
+
+namespace {
+
+class FileVertex;
+class FileFace;
+struct FileTypes :
+		vcg::UsedTypes<vcg::Use<FileVertex>::AsVertexType, vcg::Use<FileFace>::AsFaceType> {};
+class FileVertex :
+		public vcg::
+			Vertex<FileTypes, vcg::vertex::Coord3d, vcg::vertex::Qualityd, vcg::vertex::BitFlags> {
+};
+class FileFace :
+		public vcg::Face<
+			FileTypes,
+			vcg::face::VertexRef,
+			vcg::face::Color4b,
+			vcg::face::Qualityd,
+			vcg::face::BitFlags> {};
+class FileMesh : public vcg::tri::TriMesh<std::vector<FileVertex>, std::vector<FileFace>> {};
+
+using Mask = vcg::tri::io::Mask;
+
+// How files with a certain ending are read and written.
+struct Format {
+	const char* ending;
+	TriangleMesh (*load)(const std::string& path, std::string_view content);
+	void (*save)(
+		const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes);
+};
+
+TriangleMesh load_ply(const std::string& path, std::string_view content)
+{
+	const PlyCounts counts = check_ply(content);
+	FileMesh file;
+	int mask = 0;
+	const int error = vcg::tri::io::ImporterPLY<FileMesh>::Open(file, path.c_str(), mask);
+	if (error != 0)
+		throw FileError(vcg::tri::io::ImporterPLY<FileMesh>::ErrorMsg(error));
+	if (file.vert.size() != counts.vertices)
+		throw FileError("has vertices whose coordinates are neither float nor double");
+	if (file.face.size() != counts.faces)
+		throw FileError(
+			"has faces without a list of vertices that can be read (vertex_indices, of uchar and int)");
+
+	TriangleMesh mesh;
+	mesh.positions.reserve(file.vert.size());
+	for (const FileVertex& vertex : file.vert)
+		mesh.positions.emplace_back(vertex.cP()[0], vertex.cP()[1], vertex.cP()[2]);
+	mesh.faces.reserve(file.face.size());
+	for (const FileFace& face : file.face) {
+		Face corners {};
+		for (int k = 0; k < 3; ++k)
+			corners[static_cast<std::size_t>(k)] =
+				static_cast<Index>(face.cV(k) - file.vert.data());
+		mesh.faces.push_back(corners);
+	}
+	return mesh;
+}
+
+void fill(FileMesh& file, const TriangleMesh& mesh, const MeshAttributes& attributes)
+{
+	using Allocator = vcg::tri::Allocator<FileMesh>;
+	Allocator::AddVertices(file, mesh.positions.size());
+	Allocator::AddFaces(file, mesh.faces.size());
+	for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+		const Point& point = mesh.positions[i];
+		file.vert[i].P() = FileMesh::CoordType(point.x(), point.y(), point.z());
+		if (!attributes.vertex_quality.empty())
+			file.vert[i].Q() = attributes.vertex_quality[i];
+	}
+	for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+		for (int k = 0; k < 3; ++k)
+			file.face[i].V(k) =
+				&file.vert[static_cast<std::size_t>(mesh.faces[i][static_cast<std::size_t>(k)])];
+		if (!attributes.face_colors.empty()) {
+			const auto& [red, green, blue] = attributes.face_colors[i];
+			file.face[i].C() = vcg::Color4b(red, green, blue, 255);
+		}
+		if (!attributes.face_quality.empty())
+			file.face[i].Q() = attributes.face_quality[i];
+	}
+}
+
+// vcglib does not look whether the last of the file reached the disk.
+void check_written(const std::string& path, std::size_t smallest_size)
+{
+	std::error_code error;
+	const std::uintmax_t size = std::filesystem::file_size(path, error);
+	if (error || size < smallest_size)
+		throw FileError("not everything could be written; is the disk full?");
+}
+
+void save_ply(const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes)
+{
+	using Exporter = vcg::tri::io::ExporterPLY<FileMesh>;
+	int mask = Mask::IOM_VERTCOORD | Mask::IOM_FACEINDEX;
+	std::size_t vertex_size = 3 * sizeof(double);
+	std::size_t face_size = 1 + 3 * sizeof(std::int32_t);
+	if (!attributes.vertex_quality.empty()) {
+		mask |= Mask::IOM_VERTQUALITY;
+		vertex_size += sizeof(double);
+	}
+	if (!attributes.face_colors.empty()) {
+		mask |= Mask::IOM_FACECOLOR;
+		face_size += 4;
+	}
+	if (!attributes.face_quality.empty()) {
+		mask |= Mask::IOM_FACEQUALITY;
+		face_size += sizeof(double);
+	}
+	FileMesh file;
+	fill(file, mesh, attributes);
+	const int error = Exporter::Save(file, path.c_str(), mask, true);
+	if (error != 0)
+		throw FileError(Exporter::ErrorMsg(error));
+	check_written(path, mesh.positions.size() * vertex_size + mesh.faces.size() * face_size);
+}
+
+void save_stl(
+	const std::string& path, const TriangleMesh& mesh, const MeshAttributes& /*attributes*/)
+{
+	using Exporter = vcg::tri::io::ExporterSTL<FileMesh>;
+	FileMesh file;
+	fill(file, mesh, {});
+	const int error = Exporter::Save(file, path.c_str(), true);
+	if (error != 0)
+		throw FileError(Exporter::ErrorMsg(error));
+	check_written(path, 84 + 50 * mesh.faces.size());
+}
+
+void write_text(const std::string& path, const std::string& text)
+{
+	std::ofstream stream(path, std::ios::binary);
+	stream << text;
+	stream.close();
+	if (!stream)
+		throw FileError(std::strerror(errno));
+}
+
+void save_off(const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes)
+{
+	write_text(path, format_off(mesh, attributes.face_colors));
+}
+
+void save_obj(
+	const std::string& path, const TriangleMesh& mesh, const MeshAttributes& /*attributes*/)
+{
+	write_text(path, format_obj(mesh));
+}
+
+constexpr std::array<Format, 4> FORMATS = {{
+	{".ply", load_ply, save_ply},
+	{".obj",
+	 [](const std::string& /*path*/, std::string_view content) { return parse_obj(content); },
+	 save_obj},
+	{".off",
+	 [](const std::string& /*path*/, std::string_view content) { return parse_off(content); },
+	 save_off},
+	{".stl",
+	 [](const std::string& /*path*/, std::string_view content) { return parse_stl(content); },
+	 save_stl},
+}};
+
+const Format& format_of(const std::filesystem::path& path)
+{
+	std::string ending = path.extension().string();
+	std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) {
+		return static_cast<char>(std::tolower(c));
+	});
+	for (const Format& format : FORMATS) {
+		if (ending == format.ending)
+			return format;
+	}
+	throw FileError("the name must end in .ply, .obj, .off or .stl");
+}
+
+std::string read_file(const std::string& path)
+{
+	errno = 0;
+	std::ifstream stream(path, std::ios::binary);
+	if (!stream)
+		throw FileError(errno != 0 ? std::strerror(errno) : "cannot be opened");
+	std::string content {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+	if (stream.bad() || std::filesystem::is_directory(path))
+		throw FileError("cannot be read");
+	return content;
+}
+
+// vcglib reads and prints numbers by the locale of the program around it.
+class PlainNumbers {
+public:
+	PlainNumbers() : before_(std::setlocale(LC_NUMERIC, nullptr))
+	{
+		if (before_ != "C")
+			std::setlocale(LC_NUMERIC, "C");
+	}
+	~PlainNumbers()
+	{
+		if (before_ != "C")
+			std::setlocale(LC_NUMERIC, before_.c_str());
+	}
+	PlainNumbers(const PlainNumbers&) = delete;
+	PlainNumbers& operator=(const PlainNumbers&) = delete;
+
+private:
+	std::string before_;
+};
+
+// A name beside the final one that nobody else uses, so that the rename stays on one disk.
+std::filesystem::path temporary_name(const std::filesystem::path& path)
+{
+	std::random_device random;
+	std::filesystem::path name = path;
+	name.replace_filename(
+		"." + path.filename().string() + "." + std::to_string(random()) + ".part");
+	return name;
+}
+
+void check_sizes(const TriangleMesh& mesh, const MeshAttributes& attributes)
+{
+	const auto check = [](const char* name, std::size_t size, std::size_t count) {
+		if (size != 0 && size != count)
+			throw FileError(
+				"there are " + std::to_string(size) + " " + name + " for " + std::to_string(count) +
+				" elements; give one each, or none");
+	};
+	check("face colours", attributes.face_colors.size(), mesh.faces.size());
+	check("face qualities", attributes.face_quality.size(), mesh.faces.size());
+	check("vertex qualities", attributes.vertex_quality.size(), mesh.positions.size());
+	for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+		for (const Index vertex : mesh.faces[i]) {
+			if (vertex < 0 || vertex >= mesh.vertex_count())
+				throw FileError(
+					"face " + std::to_string(i) + " has vertex index " + std::to_string(vertex) +
+					", the mesh has " + std::to_string(mesh.vertex_count()) + " vertices");
+		}
+	}
+}
+
+// Runs what reads or writes a file and puts the file's name before whatever goes wrong.
+template<class Work>
+auto naming_the_file(const std::string& path, Work work)
+{
+	try {
+		const PlainNumbers plain_numbers;
+		return work();
+	}
+	catch (const std::bad_alloc&) {
+		throw FileError(path + ": there is not enough memory for it");
+	}
+	catch (const std::exception& error) {
+		throw FileError(path + ": " + error.what());
+	}
+}
+
+} // namespace
+
+TriangleMesh load_mesh(const std::string& path)
+{
+	return naming_the_file(path, [&]() {
+		const Format& format = format_of(path);
+		return format.load(path, read_file(path));
+	});
+}
+
+void save_mesh(const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes)
+{
+	naming_the_file(path, [&]() {
+		const Format& format = format_of(path);
+		check_sizes(mesh, attributes);
+		// A link stays a link: the file it points at is the one to replace.
+		const std::filesystem::path target = std::filesystem::weakly_canonical(path);
+		const std::filesystem::path temporary = temporary_name(target);
+		try {
+			format.save(temporary.string(), mesh, attributes);
+			std::filesystem::rename(temporary, target);
+		}
+		catch (...) {
+			std::error_code ignored;
+			std::filesystem::remove(temporary, ignored);
+			throw;
+		}
+	});
+}
+
+} // namespace orthopoly

@@ -6,8 +6,7 @@
 
 All meshes are seen from the same side at the same scale, flat shaded, so that a face that stands
 out is seen to. A mesh with face colours keeps them. With --error-range a bar tells how many degrees
-of angular error a colour means; it is read off the face quality and face colour of the meshes
-themselves, from 0 to DEG.
+of angular error a colour means: DEG has to be the colour range that the filter was given.
 """
 
 import argparse
@@ -20,8 +19,11 @@ import pymeshlab
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib.colors import ListedColormap, Normalize  # noqa: E402
+from matplotlib.colors import LinearSegmentedColormap, Normalize  # noqa: E402
 
+# The colours of the filters' error maps, from no error to the end of their range.
+ERROR_COLOURS = LinearSegmentedColormap.from_list(
+	"angular error", [(0, 0, 1), (0, 1, 1), (0, 1, 0), (1, 1, 0), (1, 0, 0)])
 PLAIN = np.array([0.80, 0.81, 0.84])
 OVERSAMPLING = 2
 
@@ -34,11 +36,9 @@ class Mesh:
 		self.title = title
 		self.vertices = np.asarray(mesh.vertex_matrix(), dtype=float)
 		self.faces = np.asarray(mesh.face_matrix(), dtype=int)
-		self.colours = self.quality = None
+		self.colours = None
 		if mesh.has_face_color():
 			self.colours = np.asarray(mesh.face_color_matrix(), dtype=float)[:, :3]
-		if mesh.has_face_scalar():
-			self.quality = np.asarray(mesh.face_scalar_array(), dtype=float)
 
 
 def rotation(azimuth, elevation):
@@ -88,21 +88,6 @@ def draw(mesh, turn, centre, scale, size):
 	return picture.reshape(shape).mean(axis=(1, 3))
 
 
-def colour_bar(meshes, error_range):
-	"""The colours of the meshes as a function of their face quality, 0 to error_range."""
-	with_both = [m for m in meshes if m.colours is not None and m.quality is not None]
-	if not with_both:
-		sys.exit("--error-range needs a mesh with face quality and face colour")
-	quality = np.concatenate([m.quality for m in with_both])
-	colours = np.concatenate([m.colours for m in with_both])
-	order = np.argsort(quality, kind="stable")
-	quality, colours = quality[order], colours[order]
-	inside = quality <= error_range
-	levels = np.linspace(0, error_range, 256)
-	columns = [np.interp(levels, quality[inside], colours[inside, k]) for k in range(3)]
-	return ListedColormap(np.clip(np.stack(columns, axis=1), 0, 1))
-
-
 def render(out, meshes, error_range=None, view=(-50.0, 25.0), pixels=640):
 	"""Writes the picture of the meshes (a list of Mesh) to the file `out`."""
 	turn = rotation(*view)
@@ -124,7 +109,7 @@ def render(out, meshes, error_range=None, view=(-50.0, 25.0), pixels=640):
 		axis.axis("off")
 	if error_range is not None:
 		bar = figure.add_axes([0.3, 0.075, 0.4, 0.025])
-		mappable = plt.cm.ScalarMappable(Normalize(0, error_range), colour_bar(meshes, error_range))
+		mappable = plt.cm.ScalarMappable(Normalize(0, error_range), ERROR_COLOURS)
 		figure.colorbar(mappable, cax=bar, orientation="horizontal")
 		bar.set_title("angular error, degrees", fontsize=9, pad=3)
 		bar.tick_params(labelsize=8)

@@ -44,8 +44,9 @@ struct DenoiseOptions {
 	/// Leave vertices on open boundaries where they are.
 	bool keep_boundary = false;
 	/// Paper: rings r of the local structure S_i, in face rings.
-	int guide_ring = 2;
-	/// Rings R of the non-local structure, in face rings (paper: 3); adaptive: the largest tried.
+	int guide_ring = 1;
+	/// Rings R of the non-local structure, in face rings (automatic in the paper's method: one more
+	/// than the guide ring); adaptive: the largest tried.
 	std::optional<int> structure_ring;
 	/// Paper: sigma_theta of eq. 3, degrees.
 	double sigma_theta = 30.0;
@@ -53,8 +54,9 @@ struct DenoiseOptions {
 	std::optional<double> cos_threshold;
 	/// Added to it after each iteration (delta d).
 	std::optional<double> cos_threshold_increment;
-	/// Paper: orders a and b of the polynomials along and across the matrix of eq. 11.
-	int order_x = 0;
+	/// Paper: orders a and b of the polynomials along and across the matrix of eq. 11. The paper names
+	/// neither these nor r and R; the defaults are what measured best (polynomial_fit.h).
+	int order_x = 2;
 	int order_y = 0;
 	/// Threads to run on; 0 means one per processor. Does not change the result.
 	int threads = 0;

@@ -57,16 +57,23 @@ void Execution::begin_phase(double begin, double end, std::string words)
 	phase_end_ = end;
 	words_ = std::move(words);
 	last_report_ = {};
+	begin_part(0, 1);
 	poll(0);
 }
 
-void Execution::poll(double fraction_of_phase)
+void Execution::begin_part(int part, int parts)
+{
+	part_begin_ = static_cast<double>(part) / parts;
+	part_length_ = 1.0 / parts;
+}
+
+void Execution::poll(double fraction_of_part)
 {
 	const auto now = std::chrono::steady_clock::now();
 	if (now - last_report_ >= REPORT_INTERVAL) {
 		last_report_ = now;
-		progress_.report(
-			phase_begin_ + fraction_of_phase * (phase_end_ - phase_begin_), words_);
+		const double fraction_of_phase = part_begin_ + fraction_of_part * part_length_;
+		progress_.report(phase_begin_ + fraction_of_phase * (phase_end_ - phase_begin_), words_);
 	}
 	if (progress_.cancelled())
 		throw Cancelled();

@@ -38,6 +38,9 @@ public:
 	/// Reports at once; throws Cancelled.
 	void begin_phase(double begin, double end, std::string words);
 
+	/// Loops that follow are part `part` (from 0) of `parts` equal ones of the phase.
+	void begin_part(int part, int parts);
+
 	/// Runs the body over [0, count) in parts of `grain` indices. Small loops run on the calling
 	/// thread. Throws Cancelled once the caller asked to stop, after all workers have halted; an
 	/// exception of the body ends the loop the same way and is thrown on.
@@ -48,13 +51,15 @@ public:
 
 private:
 	class Workers;
-	void poll(double fraction_of_phase);
+	void poll(double fraction_of_part);
 
 	Progress& progress_;
 	int threads_;
 	std::unique_ptr<Workers> workers_;
 	double phase_begin_ = 0;
 	double phase_end_ = 0;
+	double part_begin_ = 0;
+	double part_length_ = 1;
 	std::string words_;
 	std::chrono::steady_clock::time_point last_report_;
 };

@@ -16,37 +16,43 @@ std::size_t at(Index index)
 }
 
 void compute_centroids(
-	const std::vector<Face>& faces, const std::vector<Point>& positions, Execution& execution,
+	const std::vector<Face>& faces,
+	const std::vector<Point>& positions,
+	Execution& execution,
 	std::vector<Point>& centroids)
 {
-	execution.parallel_for(static_cast<Index>(faces.size()), GRAIN, [&](Index begin, Index end, int) {
-		for (std::size_t k = at(begin); k < at(end); ++k) {
-			const Face& face = faces[k];
-			// From the first corner: the sum of three far-off corners would lose digits.
-			const Point& a = positions[at(face[0])];
-			centroids[k] =
-				a + ((positions[at(face[1])] - a) + (positions[at(face[2])] - a)) / 3.0;
-		}
-	});
+	execution.parallel_for(
+		static_cast<Index>(faces.size()), GRAIN, [&](Index begin, Index end, int) {
+			for (std::size_t k = at(begin); k < at(end); ++k) {
+				const Face& face = faces[k];
+				// From the first corner: the sum of three far-off corners would lose digits.
+				const Point& a = positions[at(face[0])];
+				centroids[k] =
+					a + ((positions[at(face[1])] - a) + (positions[at(face[2])] - a)) / 3.0;
+			}
+		});
 }
 
 void compute_areas(
-	const std::vector<Face>& faces, const std::vector<Point>& positions, Execution& execution,
+	const std::vector<Face>& faces,
+	const std::vector<Point>& positions,
+	Execution& execution,
 	std::vector<double>& areas)
 {
-	execution.parallel_for(static_cast<Index>(faces.size()), GRAIN, [&](Index begin, Index end, int) {
-		for (std::size_t k = at(begin); k < at(end); ++k)
-			areas[k] = 0.5 * face_cross_product(positions, faces[k]).norm();
-	});
+	execution.parallel_for(
+		static_cast<Index>(faces.size()), GRAIN, [&](Index begin, Index end, int) {
+			for (std::size_t k = at(begin); k < at(end); ++k)
+				areas[k] = 0.5 * face_cross_product(positions, faces[k]).norm();
+		});
 }
 
 } // namespace
 
 void update_vertices(
-	const Workspace&           workspace,
-	const std::vector<Point>&  normals,
+	const Workspace& workspace,
+	const std::vector<Point>& normals,
 	const VertexUpdateOptions& options,
-	std::vector<Point>&        positions)
+	std::vector<Point>& positions)
 {
 	const TriangleMesh& mesh = workspace.mesh;
 	Execution& execution = workspace.execution;
@@ -54,6 +60,7 @@ void update_vertices(
 	std::vector<double> areas(options.area_weights ? mesh.faces.size() : 0);
 
 	for (int step = 0; step < options.iterations; ++step) {
+		execution.begin_part(step, options.iterations);
 		compute_centroids(mesh.faces, positions, execution, centroids);
 		if (options.area_weights)
 			compute_areas(mesh.faces, positions, execution, areas);

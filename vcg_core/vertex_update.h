@@ -18,16 +18,17 @@ struct VertexUpdateOptions {
 
 /// Moves vertices towards the planes through the face centroids with the given normals (eq. 12).
 ///
-/// All vertices move at once in each step, so the result does not depend on their order. O(#F) a step.
+/// All vertices move at once in each step, so the result does not depend on their order. O(#F) a
+/// step.
 ///
 /// @param normals   #F target unit normals; a face whose vector is zero is left out of the mean
 /// @param positions #V, moved in place; fixed vertices, and those without a face that has a normal,
 ///                  stay bit for bit
 /// Throws Cancelled; positions are then somewhere on the way.
 void update_vertices(
-	const Workspace&           workspace,
-	const std::vector<Point>&  normals,
+	const Workspace& workspace,
+	const std::vector<Point>& normals,
 	const VertexUpdateOptions& options,
-	std::vector<Point>&        positions);
+	std::vector<Point>& positions);
 
 } // namespace orthopoly

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "denoise_filter.h"
+
+#include "denoise.h"
+#include "errors.h"
+#include "layers.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace orthopoly {
+
+namespace {
+
+const char* const COMPARE = "compare_with_reference";
+
+FilterParameter compare_parameter()
+{
+	FilterParameter parameter;
+	parameter.name = COMPARE;
+	parameter.label = "Compare with a reference";
+	parameter.tooltip =
+		"Also measures the mesh against the reference mesh below, before and after: the faces are "
+		"coloured by angular error, the figures go to the log and the output values. It changes "
+		"nothing about the denoising.";
+	parameter.type = ParameterType::Boolean;
+	parameter.maximum = 1;
+	return parameter;
+}
+
+// What the user compares with, and how the mesh stood before.
+struct Comparison {
+	TriangleMesh reference;
+	double max_angle;
+	ErrorMeasures before;
+};
+
+std::optional<Comparison> start_comparison(FilterRun& run, const VcgArrays& arrays)
+{
+	if (!run.values.is_on(COMPARE))
+		return std::nullopt;
+	Comparison comparison;
+	comparison.max_angle = checked_value(max_angle_parameter(), run.values);
+	comparison.reference = read_reference(run);
+	comparison.before = measure(arrays.mesh, comparison.reference);
+	return comparison;
+}
+
+// The values that the method chose itself.
+std::string describe_resolved(const DenoiseOptions& given, const DenoiseOptions& resolved)
+{
+	std::string text;
+	for (const Parameter<DenoiseOptions>& entry : denoise_parameters()) {
+		const double value = entry.get(resolved);
+		if (!entry.can_be_automatic || entry.get(given) != AUTOMATIC || value == AUTOMATIC)
+			continue;
+		text += (text.empty() ? "chosen: " : ", ") + entry.name + " = " + entry.format(value);
+	}
+	return text;
+}
+
+void report_resolved(FilterRun& run, const DenoiseOptions& resolved)
+{
+	for (const Parameter<DenoiseOptions>& entry : denoise_parameters()) {
+		const double value = entry.get(resolved);
+		// What the method does not use stays automatic.
+		if (!entry.can_be_automatic || value == AUTOMATIC)
+			continue;
+		const std::string name = "resolved_" + entry.name;
+		if (entry.type == ParameterType::Real)
+			run.outputs.emplace_back(name, value);
+		else
+			run.outputs.emplace_back(name, static_cast<int>(value));
+	}
+}
+
+void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseResult& result)
+{
+	const bool nothing_to_do = result.status == DenoiseResult::Status::NothingToDo;
+	if (options.method == Method::Adaptive)
+		run.log(
+			"noise along the surface normals: " + in_words(result.estimated_noise) +
+			" mean edge lengths" + (options.noise_level ? " (given)" : " (estimated)"));
+	if (nothing_to_do)
+		run.log(
+			"there is no noise worth removing, so the mesh is left as it is; set noise_level to denoise "
+			"it all the same");
+	const std::string resolved = describe_resolved(options, result.resolved);
+	if (!resolved.empty())
+		run.log(resolved);
+	run.log(
+		count_of(result.iterations_done, "iteration", "iterations") + ", " +
+		count_of(result.moved_vertices, "vertex", "vertices") + " moved, by " +
+		in_words(result.mean_displacement) + " (root mean square over all vertices), " +
+		in_words(result.max_displacement) + " at most");
+	run.log(
+		"faces folded over: " + std::to_string(result.folded_faces_before) + " before, " +
+		std::to_string(result.folded_faces_after) + " after");
+	if (result.degenerate_faces > 0)
+		run.log(
+			count_of(result.degenerate_faces, "face", "faces") +
+			" without area took no part and were kept");
+	if (result.non_manifold_edges > 0)
+		run.log(
+			count_of(result.non_manifold_edges, "edge", "edges") +
+			" with more than two faces, or two faces of opposite orientation: results are less good "
+			"there");
+
+	run.outputs.insert(
+		run.outputs.end(),
+		{
+			{"nothing_to_do", nothing_to_do},
+			{"iterations_done", result.iterations_done},
+			{"degenerate_faces", static_cast<int>(result.degenerate_faces)},
+			{"non_manifold_edges", static_cast<int>(result.non_manifold_edges)},
+			{"folded_faces_before", static_cast<int>(result.folded_faces_before)},
+			{"folded_faces_after", static_cast<int>(result.folded_faces_after)},
+			{"moved_vertices", static_cast<int>(result.moved_vertices)},
+			{"mean_displacement", result.mean_displacement},
+			{"max_displacement", result.max_displacement},
+		});
+	if (options.method == Method::Adaptive)
+		run.outputs.emplace_back("estimated_noise", result.estimated_noise);
+	report_resolved(run, result.resolved);
+}
+
+} // namespace
+
+std::string DenoiseFilter::name() const
+{
+	return "Orthogonal Polynomial Denoising";
+}
+
+std::string DenoiseFilter::python_name() const
+{
+	return "apply_coord_orthogonal_polynomial_denoising";
+}
+
+std::string DenoiseFilter::info() const
+{
+	return "Removes noise from a triangle mesh and keeps edges, corners and fine detail. Only vertices "
+		   "move; faces stay as they are.<br><br>"
+		   "Apply it as it is: the method <b>adaptive</b> estimates the noise and chooses everything "
+		   "else from the mesh. Where detail is lost, set the strength to gentle; where noise is left, "
+		   "to strong; for the ripples of a depth camera set the kind of noise to scanner. The method "
+		   "<b>paper</b> is the published one, with its own parameters.<br><br>"
+		   "Face normals are filtered by discrete orthogonal polynomials, fitted to the normals of "
+		   "non-local similar structures (faces nearby whose surroundings look the same way), and the "
+		   "vertices follow the filtered normals.<br>"
+		   "See: <b>\"Surface Smoothing based on Discrete Orthogonal Polynomial\"</b><br><br>"
+		   "If you have the true shape in another layer, compare with it: the faces are coloured by "
+		   "the angle between the normals (blue: none, red: the colour range and more), which is also "
+		   "their quality, in degrees; the quality of a vertex is its distance to the reference.";
+}
+
+Menu DenoiseFilter::menu() const
+{
+	return Menu::Smoothing;
+}
+
+bool DenoiseFilter::works_on_current_layer() const
+{
+	return true;
+}
+
+int DenoiseFilter::may_change(const MeshDocument& document) const
+{
+	const int moved = MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
+	const int painted =
+		MeshModel::MM_FACECOLOR | MeshModel::MM_FACEQUALITY | MeshModel::MM_VERTQUALITY;
+	// Hosts put aside, and so create, all that a filter may change while they preview it: a mesh on
+	// its own has nothing to be compared with and shall not come by face colours.
+	Index layers = 0;
+	for_each_layer(document, [&](const MeshModel&) { ++layers; });
+	return layers > 1 ? moved | painted : moved;
+}
+
+FilterParameters DenoiseFilter::parameters(const MeshDocument& document) const
+{
+	FilterParameters parameters = table_parameters(denoise_parameters());
+	parameters.push_back(only_selected_parameter(document));
+	parameters.push_back(compare_parameter());
+	parameters.push_back(reference_parameter(
+		document,
+		"The layer with the true shape. Of no effect unless 'Compare with a reference' is on."));
+	parameters.push_back(max_angle_parameter());
+	// What most people never touch comes last, where a host does not hide it.
+	std::stable_partition(
+		parameters.begin(), parameters.end(), [](const FilterParameter& parameter) {
+			return !parameter.advanced;
+		});
+	return parameters;
+}
+
+void DenoiseFilter::apply(FilterRun& run) const
+{
+	const DenoiseOptions options = table_options(denoise_parameters(), run.values);
+	validate(options);
+	const VcgArrays arrays = read_current_layer(run);
+	Progress progress = vcg_progress(run.callback);
+	report_or_stop(progress, 0, "reading the mesh");
+	const std::optional<Comparison> comparison = start_comparison(run, arrays);
+
+	const DenoiseResult result = denoise(arrays.mesh, options, progress);
+	report_or_stop(progress, 1, "done");
+	std::optional<ErrorMeasures> after;
+	if (comparison) {
+		TriangleMesh denoised;
+		denoised.positions = result.positions;
+		denoised.faces = arrays.mesh.faces;
+		after = measure(denoised, comparison->reference);
+	}
+
+	// From here on nothing is refused. Painting first: it is what may run out of memory.
+	if (after)
+		paint_errors(run, arrays, *after, comparison->max_angle);
+	if (result.moved_vertices > 0)
+		write_current_layer(run, arrays, result.positions);
+	report_result(run, options, result);
+	if (after) {
+		report_errors(run, comparison->before, "noisy_");
+		report_errors(run, *after, "");
+		run.outputs.emplace_back("paired_by_index", after->paired_by_index);
+		run.log("against the reference: " + describe_pairing(*after, arrays));
+		run.log("before: " + describe_errors(comparison->before));
+		run.log("after: " + describe_errors(*after));
+	}
+}
+
+} // namespace orthopoly

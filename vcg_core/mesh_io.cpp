@@ -308,4 +308,14 @@ void save_mesh(const std::string& path, const TriangleMesh& mesh, const MeshAttr
 	});
 }
 
+void check_savable(const std::string& path)
+{
+	naming_the_file(path, [&]() {
+		format_of(path);
+		const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+		if (!std::filesystem::is_directory(folder))
+			throw FileError("there is no folder " + folder.string());
+	});
+}
+
 } // namespace orthopoly

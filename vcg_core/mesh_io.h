@@ -13,8 +13,8 @@ namespace orthopoly {
 /// Reads PLY (both kinds), OBJ, OFF or STL, told apart by the name's ending, through vcglib.
 ///
 /// Vertices and faces keep the order of the file; the corners of an STL file that have the same
-/// coordinates become one vertex (in the order of their first mention). Polygons are an error. Throws
-/// FileError with the file's name and what is wrong.
+/// coordinates become one vertex (in the order of their first mention). Polygons are an error.
+/// Throws FileError with the file's name and what is wrong.
 TriangleMesh load_mesh(const std::string& path);
 
 /// What may be written beside positions and faces.
@@ -31,5 +31,9 @@ struct MeshAttributes {
 /// Throws FileError; nothing is left behind under the name where writing failed.
 void save_mesh(
 	const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes = {});
+
+/// Throws FileError where the ending of the name or its folder would make save_mesh fail: worth
+/// knowing before a long computation.
+void check_savable(const std::string& path);
 
 } // namespace orthopoly

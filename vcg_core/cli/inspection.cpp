@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inspection.h"
+
+#include "adjacency.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace orthopoly {
+
+namespace {
+
+// How many elements equal one before them; puts them in order.
+template<class Element, class Less>
+Index count_repeated(std::vector<Element>& elements, Less less)
+{
+	std::sort(elements.begin(), elements.end(), less);
+	const auto end =
+		std::unique(elements.begin(), elements.end(), [&](const Element& a, const Element& b) {
+			return !less(a, b) && !less(b, a);
+		});
+	return static_cast<Index>(elements.end() - end);
+}
+
+Index count_duplicate_vertices(const TriangleMesh& mesh)
+{
+	std::vector<Point> points;
+	std::copy_if(
+		mesh.positions.begin(),
+		mesh.positions.end(),
+		std::back_inserter(points),
+		[](const Point& point) { return point.allFinite(); });
+	return count_repeated(points, [](const Point& a, const Point& b) {
+		return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
+	});
+}
+
+Index count_duplicate_faces(const TriangleMesh& mesh)
+{
+	std::vector<Face> faces = mesh.faces;
+	for (Face& face : faces)
+		std::sort(face.begin(), face.end());
+	return count_repeated(faces, std::less<>());
+}
+
+Index count_components(const IndexLists& neighbors)
+{
+	const std::size_t face_count = neighbors.offsets.size() - 1;
+	std::vector<bool> reached(face_count, false);
+	std::vector<Index> open;
+	Index count = 0;
+	for (std::size_t seed = 0; seed < face_count; ++seed) {
+		if (reached[seed])
+			continue;
+		++count;
+		reached[seed] = true;
+		open.push_back(static_cast<Index>(seed));
+		while (!open.empty()) {
+			const Index face = open.back();
+			open.pop_back();
+			for (const Index* it = neighbors.begin(face); it != neighbors.end(face); ++it) {
+				if (!reached[static_cast<std::size_t>(*it)]) {
+					reached[static_cast<std::size_t>(*it)] = true;
+					open.push_back(*it);
+				}
+			}
+		}
+	}
+	return count;
+}
+
+} // namespace
+
+Inspection inspect(const TriangleMesh& mesh)
+{
+	Inspection found;
+	for (const Point& point : mesh.positions)
+		found.not_finite_vertices += point.allFinite() ? 0 : 1;
+	const IndexLists around = vertex_faces(mesh.vertex_count(), mesh.faces);
+	for (Index i = 0; i < mesh.vertex_count(); ++i)
+		found.unreferenced_vertices += around.size(i) == 0 ? 1 : 0;
+	for (const Face& face : mesh.faces)
+		found.degenerate_faces += is_degenerate(mesh.positions, face) ? 1 : 0;
+	for (const std::uint8_t flag : boundary_vertices(mesh.vertex_count(), mesh.faces))
+		found.boundary_vertices += flag;
+	found.duplicate_vertices = count_duplicate_vertices(mesh);
+	found.duplicate_faces = count_duplicate_faces(mesh);
+	found.non_manifold_edges = count_non_manifold_edges(mesh.faces);
+	found.components = count_components(face_neighbors(mesh.faces, around));
+	return found;
+}
+
+} // namespace orthopoly

@@ -105,6 +105,7 @@ private:
 		measures_.face_angles.assign(mesh_.faces.size(), -1.0);
 		double sum = 0;
 		double squared_sum = 0;
+		double folded_squared_sum = 0;
 		for (std::size_t i = 0; i < mesh_.faces.size(); ++i) {
 			const Point& normal = geometry_.normals[i];
 			const Point paired = paired_normal(static_cast<Index>(i));
@@ -116,13 +117,18 @@ private:
 			sum += angle;
 			squared_sum += angle * angle;
 			++measures_.measured_faces;
-			if (normal.dot(paired) < 0)
+			if (normal.dot(paired) < 0) {
 				++measures_.folded_faces;
+				folded_squared_sum += angle * angle;
+			}
 		}
 		if (measures_.measured_faces > 0) {
 			measures_.mean_angle = DEGREES_PER_RADIAN * sum / measures_.measured_faces;
 			measures_.msae = squared_sum / measures_.measured_faces;
 		}
+		if (measures_.measured_faces > measures_.folded_faces)
+			measures_.msae_without_folded = (squared_sum - folded_squared_sum) /
+											(measures_.measured_faces - measures_.folded_faces);
 	}
 
 	// Zero where the face has no pair.

@@ -14,6 +14,8 @@ struct ErrorMeasures {
 	double max_angle = 0;
 	/// Mean square angular error, radians squared (eq. 14).
 	double msae = 0;
+	/// The same over the faces that are not folded: a few folded faces outweigh all others.
+	double msae_without_folded = 0;
 	/// Area-weighted root mean square distance of the vertices to the whole reference surface, the
 	/// caller's length unit (eq. 13), and over the reference's mean edge length.
 	double vertex_error = 0;

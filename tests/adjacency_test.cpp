@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "adjacency.h"
+
+#include "defects.h"
+#include "recipes.h"
+#include "shapes.h"
+#include "test_support.h"
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+using namespace orthopoly;
+
+namespace {
+
+std::vector<Index> list(const IndexLists& lists, Index index)
+{
+	return {lists.begin(index), lists.end(index)};
+}
+
+bool share_vertex(const Face& a, const Face& b)
+{
+	return std::any_of(a.begin(), a.end(), [&](Index vertex) {
+		return std::find(b.begin(), b.end(), vertex) != b.end();
+	});
+}
+
+} // namespace
+
+TEST_CASE("faces around the vertices of a square", "[adjacency]")
+{
+	const TriangleMesh mesh = unit_square();
+	const IndexLists around = vertex_faces(mesh.vertex_count(), mesh.faces);
+	CHECK(list(around, 0) == std::vector<Index> {0, 1});
+	CHECK(list(around, 1) == std::vector<Index> {0});
+	CHECK(list(around, 2) == std::vector<Index> {0, 1});
+	CHECK(list(around, 3) == std::vector<Index> {1});
+	CHECK(around.size(3) == 1);
+}
+
+TEST_CASE("a face that names a vertex twice is around it once", "[adjacency]")
+{
+	const std::vector<Face> faces = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {1, 1, 1}};
+	const IndexLists around = vertex_faces(3, faces);
+	CHECK(list(around, 0) == std::vector<Index> {0, 1, 2});
+	CHECK(list(around, 1) == std::vector<Index> {0, 1, 2, 3});
+	CHECK(around.size(2) == 0);
+}
+
+TEST_CASE("neighbours are the faces that share a vertex", "[adjacency]")
+{
+	for (const Recipe& recipe : recipes()) {
+		CAPTURE(recipe.name);
+		const TriangleMesh mesh = recipe.make(300);
+		if (mesh.face_count() > 1000)
+			continue;
+		const IndexLists around = vertex_faces(mesh.vertex_count(), mesh.faces);
+		const IndexLists neighbors = face_neighbors(mesh.faces, around);
+		REQUIRE(neighbors.offsets.size() == mesh.faces.size() + 1);
+		for (Index i = 0; i < mesh.face_count(); ++i) {
+			std::vector<Index> expected;
+			for (Index j = 0; j < mesh.face_count(); ++j) {
+				if (j != i && share_vertex(
+								  mesh.faces[static_cast<std::size_t>(i)],
+								  mesh.faces[static_cast<std::size_t>(j)]))
+					expected.push_back(j);
+			}
+			REQUIRE(list(neighbors, i) == expected);
+		}
+	}
+}
+
+TEST_CASE("the boundary of an open mesh", "[adjacency]")
+{
+	CHECK(boundary_vertices(4, unit_square().faces) == std::vector<std::uint8_t> {1, 1, 1, 1});
+	CHECK(boundary_vertices(4, tetrahedron().faces) == std::vector<std::uint8_t> {0, 0, 0, 0});
+	// Four squares around an inner vertex.
+	const std::vector<Face> grid = {
+		{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {3, 4, 7}, {3, 7, 6}, {4, 5, 8}, {4, 8, 7}};
+	CHECK(boundary_vertices(9, grid) == std::vector<std::uint8_t> {1, 1, 1, 1, 0, 1, 1, 1, 1});
+}
+
+TEST_CASE("non-manifold edges are counted", "[adjacency]")
+{
+	CHECK(count_non_manifold_edges(make_part(2000).faces) == 0);
+	CHECK(count_non_manifold_edges(unit_square().faces) == 0);
+	CHECK(count_non_manifold_edges(make_non_manifold_edge().faces) == 6);
+	// Two faces that run along their common edge the same way.
+	CHECK(count_non_manifold_edges({{0, 1, 2}, {0, 1, 3}}) == 1);
+	CHECK(count_non_manifold_edges({{0, 1, 2}, {1, 0, 3}}) == 0);
+	CHECK(count_non_manifold_edges({}) == 0);
+}
+
+TEST_CASE("rings grow one step at a time around a face", "[adjacency]")
+{
+	const TriangleMesh mesh = make_torus(2000);
+	const IndexLists around = vertex_faces(mesh.vertex_count(), mesh.faces);
+	const IndexLists neighbors = face_neighbors(mesh.faces, around);
+	RingCollector rings(neighbors);
+	for (const Index seed : {0, 17, 1200}) {
+		rings.collect(seed, 3);
+		// Every inner face of a grid of valence six has twelve neighbours.
+		CHECK(rings.count_within(0) == 1);
+		CHECK(rings.count_within(1) == 13);
+		CHECK(rings.count_within(2) == 37);
+		CHECK(rings.count_within(3) == 73);
+		REQUIRE(rings.faces().size() == 73);
+		CHECK(rings.faces().front() == seed);
+		const std::set<Index> different(rings.faces().begin(), rings.faces().end());
+		CHECK(different.size() == 73);
+		// A face of ring k touches one of ring k - 1.
+		for (std::size_t ring = 1; ring <= 3; ++ring) {
+			for (std::size_t i = rings.count_within(static_cast<int>(ring) - 1);
+				 i < rings.count_within(static_cast<int>(ring));
+				 ++i) {
+				const auto inner_end =
+					rings.faces().begin() +
+					static_cast<std::ptrdiff_t>(rings.count_within(static_cast<int>(ring) - 1));
+				CHECK(std::any_of(rings.faces().begin(), inner_end, [&](Index inner) {
+					return share_vertex(
+						mesh.faces[static_cast<std::size_t>(inner)],
+						mesh.faces[static_cast<std::size_t>(rings.faces()[i])]);
+				}));
+			}
+		}
+	}
+}
+
+TEST_CASE("growing a ring is collecting one more", "[adjacency]")
+{
+	const TriangleMesh mesh = make_height_field(500);
+	const IndexLists around = vertex_faces(mesh.vertex_count(), mesh.faces);
+	const IndexLists neighbors = face_neighbors(mesh.faces, around);
+	RingCollector grown(neighbors);
+	RingCollector collected(neighbors);
+	grown.collect(100, 0);
+	CHECK(grown.faces() == std::vector<Index> {100});
+	for (int ring = 1; ring < 6; ++ring) {
+		grown.grow();
+		collected.collect(100, ring);
+		CHECK(grown.faces() == collected.faces());
+	}
+}
+
+TEST_CASE("rings stop at the end of a component", "[adjacency]")
+{
+	const TriangleMesh mesh = make_isolated_face();
+	const IndexLists around = vertex_faces(mesh.vertex_count(), mesh.faces);
+	const IndexLists neighbors = face_neighbors(mesh.faces, around);
+	RingCollector rings(neighbors);
+	rings.collect(mesh.face_count() - 1, 4);
+	CHECK(rings.faces() == std::vector<Index> {mesh.face_count() - 1});
+	CHECK(rings.count_within(4) == 1);
+	rings.collect(0, 50);
+	CHECK(static_cast<Index>(rings.faces().size()) == mesh.face_count() - 1);
+}

@@ -194,7 +194,7 @@ std::map<std::string, QVariant> FilterOrthopolyPlugin::applyFilter(
 	const QAction* action,
 	const RichParameterList& parameters,
 	MeshDocument& document,
-	unsigned int& postConditionMask,
+	unsigned int& post_condition_mask,
 	vcg::CallBackPos* callback)
 {
 	// MLException is the one that every host turns into a message.
@@ -203,7 +203,7 @@ std::map<std::string, QVariant> FilterOrthopolyPlugin::applyFilter(
 		FilterRun run {document, read_values(filter, parameters, document), callback, {}};
 		run.log = [this](const std::string& line) { log(GLLogStream::FILTER, "%s", line.c_str()); };
 		apply_filter(filter, run);
-		postConditionMask = static_cast<unsigned int>(run.changed);
+		post_condition_mask = static_cast<unsigned int>(run.changed);
 
 		std::map<std::string, QVariant> outputs;
 		for (const auto& [name, value] : run.outputs)

@@ -7,7 +7,7 @@
 #include <common/plugins/interfaces/filter_plugin.h>
 
 /// The filters as plugin of MeshLab 2021.07 and later, and of pymeshlab.
-class FilterOrthopolyPlugin : public QObject, public FilterPlugin {
+class FilterOrthopolyPlugin final : public QObject, public FilterPlugin {
 	Q_OBJECT
 	MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
 	Q_INTERFACES(FilterPlugin)
@@ -29,7 +29,7 @@ public:
 		const QAction* action,
 		const RichParameterList& parameters,
 		MeshDocument& document,
-		unsigned int& postConditionMask,
+		unsigned int& post_condition_mask,
 		vcg::CallBackPos* callback) override;
 
 private:

@@ -7,7 +7,7 @@
 #include <common/interfaces.h>
 
 /// The filters as plugin of MeshLab 2020.09.
-class FilterOrthopolyPlugin : public QObject, public MeshFilterInterface {
+class FilterOrthopolyPlugin final : public QObject, public MeshFilterInterface {
 	Q_OBJECT
 	MESHLAB_PLUGIN_IID_EXPORTER(MESH_FILTER_INTERFACE_IID)
 	Q_INTERFACES(MeshFilterInterface)

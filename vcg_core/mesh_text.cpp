@@ -88,6 +88,7 @@ private:
 	struct SameBits {
 		bool operator()(const Key& a, const Key& b) const
 		{
+			// NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
 			return std::memcmp(a.data(), b.data(), sizeof(Key)) == 0;
 		}
 	};

@@ -14,10 +14,10 @@ namespace orthopoly {
 namespace {
 
 template<class Value>
-struct is_optional : std::false_type {
+struct IsOptional : std::false_type {
 };
 template<class Value>
-struct is_optional<std::optional<Value>> : std::true_type {
+struct IsOptional<std::optional<Value>> : std::true_type {
 };
 
 // Joins what a host shows to the field it stands for.
@@ -26,7 +26,7 @@ Parameter<Options> bind(Field Options::*field, ParameterInfo info)
 {
 	Parameter<Options> parameter;
 	static_cast<ParameterInfo&>(parameter) = std::move(info);
-	if constexpr (is_optional<Field>::value) {
+	if constexpr (IsOptional<Field>::value) {
 		using Value = typename Field::value_type;
 		parameter.can_be_automatic = true;
 		parameter.get = [field](const Options& options) {

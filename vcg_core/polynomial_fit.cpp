@@ -8,12 +8,12 @@ namespace orthopoly {
 
 namespace {
 
-// Faces a thread takes at a time when it fits; about a millisecond of work.
-constexpr Index FIT_GRAIN = 64;
+// Faces a thread takes at a time when it fits; about half a millisecond of work.
+constexpr Index FIT_GRAIN = 32;
 
 // Votes are kept for so many fits at a time before their faces gather them: 40 faces and 32 bytes
 // each make some megabytes, however large the mesh.
-constexpr Index BLOCK = 4096;
+constexpr Index BLOCK = 1024;
 
 // Faces a thread takes at a time when the votes are gathered.
 constexpr Index SMALLEST_GATHER_GRAIN = 4096;

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "noise.h"
+#include "shapes.h"
+#include "workspace.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+namespace orthopoly {
+
+/// A mesh with what the steps of a method need to work on it.
+struct StepFixture {
+	explicit StepFixture(TriangleMesh given, int threads = 1) :
+			mesh(std::move(given)), execution(threads, progress), workspace(mesh, execution),
+			geometry(face_geometry(mesh.positions, mesh.faces))
+	{
+	}
+
+	TriangleMesh mesh;
+	Progress progress;
+	Execution execution;
+	Workspace workspace;
+	FaceGeometry geometry;
+};
+
+/// The square [0, 1]^2 at z = 0 in n x n squares of two triangles, normals up.
+inline TriangleMesh make_flat_grid(int n)
+{
+	TriangleMesh mesh;
+	for (int y = 0; y <= n; ++y) {
+		for (int x = 0; x <= n; ++x)
+			mesh.positions.emplace_back(double(x) / n, double(y) / n, 0.0);
+	}
+	for (int y = 0; y < n; ++y) {
+		for (int x = 0; x < n; ++x) {
+			const Index a = y * (n + 1) + x;
+			mesh.faces.push_back({a, a + 1, a + n + 2});
+			mesh.faces.push_back({a, a + n + 2, a + n + 1});
+		}
+	}
+	return mesh;
+}
+
+/// The same mesh with noise on it.
+inline TriangleMesh
+noisy(TriangleMesh mesh, double sigma, NoiseDirection direction = NoiseDirection::Normal)
+{
+	NoiseOptions options;
+	options.sigma = sigma;
+	options.direction = direction;
+	options.seed = 7;
+	mesh.positions = add_noise(mesh, options);
+	return mesh;
+}
+
+/// A rotation about no axis in particular.
+inline Eigen::Matrix3d some_rotation()
+{
+	return Eigen::AngleAxisd(1.1, Point(1, -2, 3).normalized()).toRotationMatrix();
+}
+
+template<class Transform>
+std::vector<Point> each(std::vector<Point> points, Transform transform)
+{
+	for (Point& point : points)
+		point = transform(point);
+	return points;
+}
+
+inline double largest_difference(const std::vector<Point>& a, const std::vector<Point>& b)
+{
+	double largest = a.size() == b.size() ? 0.0 : 1e300;
+	for (std::size_t i = 0; i < a.size() && i < b.size(); ++i)
+		largest = std::max(largest, (a[i] - b[i]).norm());
+	return largest;
+}
+
+inline bool same_bits(const Point& a, const Point& b)
+{
+	return std::memcmp(a.data(), b.data(), 3 * sizeof(double)) == 0;
+}
+
+inline bool same_bits(const std::vector<Point>& a, const std::vector<Point>& b)
+{
+	if (a.size() != b.size())
+		return false;
+	for (std::size_t i = 0; i < a.size(); ++i) {
+		if (!same_bits(a[i], b[i]))
+			return false;
+	}
+	return true;
+}
+
+} // namespace orthopoly

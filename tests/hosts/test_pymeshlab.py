@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is particular to Python: keyword arguments, enum names, percentages, the dictionary of output
+values, layers in any order."""
+
+import math
+
+import mlx
+import numpy as np
+import ply
+import pytest
+import shapes
+
+DENOISE = "apply_coord_orthogonal_polynomial_denoising"
+ERROR = "compute_scalar_by_angular_error_per_face"
+NOISE = "apply_coord_gaussian_noise"
+
+# Names that scripts may rely on, and their types.
+DENOISE_OUTPUTS = {
+    "nothing_to_do": bool, "iterations_done": int, "degenerate_faces": int,
+    "non_manifold_edges": int, "folded_faces_before": int, "folded_faces_after": int,
+    "moved_vertices": int, "mean_displacement": float, "max_displacement": float,
+}
+ERROR_OUTPUTS = {
+    "mean_angle": float, "max_angle": float, "msae": float, "vertex_error": float,
+    "relative_vertex_error": float, "max_distance": float, "folded_faces": int,
+    "measured_faces": int,
+}
+
+
+def load(*paths):
+    return [{"do": "load", "path": path} for path in paths]
+
+
+def apply(name, **arguments):
+    return {"do": "filter", "name": name, "arguments": arguments}
+
+
+def outputs_of(pymeshlab, folder, steps):
+    results, log = pymeshlab.run_steps(folder, steps)
+    for step, result in zip(steps, results):
+        assert result["ok"], (step, result, log)
+    return [result["outputs"] for step, result in zip(steps, results) if step["do"] == "filter"]
+
+
+def check_types(outputs, expected):
+    for name, kind in expected.items():
+        assert type(outputs[name]) is kind, (name, outputs[name])
+    assert all(math.isfinite(value) for value in outputs.values())
+
+
+def test_denoising_returns_what_it_did(pymeshlab, tmp_path, clean_and_noisy):
+    (outputs,) = outputs_of(pymeshlab, tmp_path, load(clean_and_noisy[1]) + [apply(DENOISE)])
+    check_types(outputs, {**DENOISE_OUTPUTS, "estimated_noise": float})
+    assert 0.05 < outputs["estimated_noise"] < 0.3
+    assert 0 < outputs["moved_vertices"] <= 866
+    assert 0 < outputs["mean_displacement"] < outputs["max_displacement"] < 1
+    assert "mean_angle" not in outputs
+    assert outputs["resolved_iterations"] == outputs["iterations_done"] > 0
+
+
+def test_comparison_returns_the_measures_before_and_after(pymeshlab, tmp_path, clean_and_noisy):
+    before, outputs, after = outputs_of(
+        pymeshlab, tmp_path,
+        load(*clean_and_noisy)
+        + [
+            apply(ERROR, reference=0),
+            apply(DENOISE, method="paper", compare_with_reference=True, reference=0),
+            apply(ERROR, reference=0),
+        ],
+    )
+    check_types(before, {**ERROR_OUTPUTS, "paired_by_index": bool})
+    check_types(outputs, {**DENOISE_OUTPUTS, **ERROR_OUTPUTS})
+    assert before["paired_by_index"] is True
+    for name in ERROR_OUTPUTS:
+        assert outputs["noisy_" + name] == pytest.approx(before[name])
+        assert outputs[name] == pytest.approx(after[name], rel=1e-6)
+    assert outputs["mean_angle"] < 0.5 * outputs["noisy_mean_angle"]
+
+
+def test_choices_go_by_name_or_number(pymeshlab, tmp_path, clean_and_noisy):
+    by_name, by_number, other = outputs_of(
+        pymeshlab, tmp_path,
+        load(clean_and_noisy[0])
+        + [apply(NOISE, direction="isotropic")]
+        + load(clean_and_noisy[0])
+        + [apply(NOISE, direction=2)]
+        + load(clean_and_noisy[0])
+        + [apply(NOISE, direction="random")],
+    )
+    assert by_name == by_number != other
+
+
+def test_unknown_choice_is_refused_with_the_names_there_are(pymeshlab, tmp_path, clean_and_noisy):
+    steps = load(clean_and_noisy[0]) + [apply(DENOISE, method="bilateral")]
+    results, _ = pymeshlab.run_steps(tmp_path, steps)
+    assert not results[1]["ok"]
+    assert "adaptive" in results[1]["error"] and "paper" in results[1]["error"]
+
+
+def test_unknown_parameter_is_refused(pymeshlab, tmp_path, clean_and_noisy):
+    steps = load(clean_and_noisy[0]) + [apply(DENOISE, sigma=3)]
+    results, _ = pymeshlab.run_steps(tmp_path, steps)
+    assert not results[1]["ok"] and "sigma" in results[1]["error"]
+
+
+def test_percentage_is_of_the_bounding_box_diagonal(pymeshlab, tmp_path, clean_and_noisy):
+    positions, faces = shapes.cube()
+    half = faces[(positions[faces][:, :, 0] <= 0).all(axis=1)]
+    partial = ply.write(tmp_path / "partial.ply", positions, half)
+    diagonal = 2 * math.sqrt(3)
+    everything, percentage, absolute = outputs_of(
+        pymeshlab, tmp_path,
+        load(partial, clean_and_noisy[0])
+        + [
+            apply(ERROR, reference=0),
+            apply(ERROR, reference=0, max_distance={"percentage": 5}),
+            apply(ERROR, reference=0, max_distance={"absolute": 0.05 * diagonal}),
+        ],
+    )
+    assert everything["measured_faces"] == 1728
+    assert percentage["measured_faces"] == absolute["measured_faces"] < 1728
+
+
+def test_layers_in_any_order(pymeshlab, tmp_path, clean_and_noisy):
+    clean, noisy = clean_and_noisy
+    first, second = outputs_of(
+        pymeshlab, tmp_path,
+        load(clean, noisy)
+        + [apply(ERROR, reference=0)]
+        + load(clean)
+        + [{"do": "current", "id": 1}, apply(ERROR, reference=2)],
+    )
+    assert first == second
+    # The current layer first, the reference after it.
+    (third,) = outputs_of(
+        pymeshlab, tmp_path,
+        load(noisy, clean) + [{"do": "current", "id": 0}, apply(ERROR, reference=1)],
+    )
+    assert third == first
+
+
+def test_default_reference_is_the_first_other_layer(pymeshlab, tmp_path, clean_and_noisy):
+    clean, noisy = clean_and_noisy
+    given, default = outputs_of(
+        pymeshlab, tmp_path,
+        load(noisy, clean)
+        + [{"do": "current", "id": 0}, apply(ERROR, reference=1), apply(ERROR)],
+    )
+    assert given == default
+
+
+def test_no_reference_is_needed_and_none_is_touched(pymeshlab, tmp_path, clean_and_noisy):
+    clean, noisy = clean_and_noisy
+    saved = tmp_path / "after.npz"
+    outputs_of(
+        pymeshlab, tmp_path,
+        load(clean, noisy)
+        + [
+            apply(DENOISE, method="paper", compare_with_reference=True, reference=0),
+            {"do": "current", "id": 0},
+            {"do": "save", "path": saved},
+        ],
+    )
+    after = np.load(saved)
+    assert np.array_equal(after["positions"], ply.read(clean).positions)
+    assert "face_quality" not in after and "face_colors" not in after
+
+
+def test_normals_follow_the_new_positions(pymeshlab, tmp_path, clean_and_noisy):
+    saved = tmp_path / "after.npz"
+    steps = load(clean_and_noisy[1]) + [apply(DENOISE, method="paper"), {"do": "save", "path": saved}]
+    outputs_of(pymeshlab, tmp_path, steps)
+    after = np.load(saved)
+    # Inside a side of the cube the normal of a vertex is that of the faces around it.
+    weights = np.zeros_like(after["positions"])
+    face_normals = shapes.normals(after["positions"], after["faces"])
+    for corner in range(3):
+        np.add.at(weights, after["faces"][:, corner], face_normals)
+    weights /= np.linalg.norm(weights, axis=1, keepdims=True)
+    assert (weights * after["vertex_normals"]).sum(axis=1).min() > 0.97
+
+
+def test_a_clean_mesh_is_told_so(pymeshlab, tmp_path, clean_and_noisy):
+    results, log = pymeshlab.run_steps(
+        tmp_path, load(clean_and_noisy[0]) + [apply(DENOISE), {"do": "save", "path": tmp_path / "a.npz"}]
+    )
+    assert results[1]["ok"] and results[1]["outputs"]["nothing_to_do"] is True
+    assert results[1]["outputs"]["moved_vertices"] == 0
+    assert "no noise worth removing" in log
+    after = np.load(tmp_path / "a.npz")["positions"]
+    assert np.array_equal(after, ply.read(clean_and_noisy[0]).positions)
+
+
+def test_progress_has_words_and_never_falls(pymeshlab, tmp_path, clean_and_noisy):
+    _, log = pymeshlab.run_steps(tmp_path, load(clean_and_noisy[1]) + [apply(DENOISE, method="paper")])
+    start = log.index(DENOISE) if DENOISE in log else 0
+    percents = [
+        int(line.rsplit("[", 1)[1].split("%")[0])
+        for line in log[start:].splitlines()
+        if "iteration" in line and line.rstrip().endswith("]")
+    ]
+    assert len(percents) >= 3 and percents == sorted(percents)
+
+
+@pytest.mark.parametrize("filter_name", [entry["name"] for entry in mlx.TABLE["filters"]])
+def test_a_document_without_layers_is_refused(pymeshlab, tmp_path, filter_name):
+    python_name = next(e["python_name"] for e in mlx.TABLE["filters"] if e["name"] == filter_name)
+    results, _ = pymeshlab.run_steps(tmp_path, [apply(python_name)])
+    assert not results[0]["ok"] and "mesh" in results[0]["error"]

@@ -2,8 +2,8 @@
 #include "mesh_io.h"
 
 #include "errors.h"
+#include "mesh_ply.h"
 #include "mesh_text.h"
-#include "ply_check.h"
 
 #include <algorithm>
 #include <cctype>
@@ -20,7 +20,6 @@
 
 #include <wrap/io_trimesh/export_ply.h>
 #include <wrap/io_trimesh/export_stl.h>
-#include <wrap/io_trimesh/import_ply.h>
 
 namespace orthopoly {
 
@@ -48,39 +47,10 @@ using Mask = vcg::tri::io::Mask;
 // How files with a certain ending are read and written.
 struct Format {
 	const char* ending;
-	TriangleMesh (*load)(const std::string& path, std::string_view content);
+	TriangleMesh (*load)(std::string_view content);
 	void (*save)(
 		const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes);
 };
-
-TriangleMesh load_ply(const std::string& path, std::string_view content)
-{
-	const PlyCounts counts = check_ply(content);
-	FileMesh file;
-	int mask = 0;
-	const int error = vcg::tri::io::ImporterPLY<FileMesh>::Open(file, path.c_str(), mask);
-	if (error != 0)
-		throw FileError(vcg::tri::io::ImporterPLY<FileMesh>::ErrorMsg(error));
-	if (file.vert.size() != counts.vertices)
-		throw FileError("has vertices whose coordinates are neither float nor double");
-	if (file.face.size() != counts.faces)
-		throw FileError(
-			"has faces without a list of vertices that can be read (vertex_indices, of uchar and int)");
-
-	TriangleMesh mesh;
-	mesh.positions.reserve(file.vert.size());
-	for (const FileVertex& vertex : file.vert)
-		mesh.positions.emplace_back(vertex.cP()[0], vertex.cP()[1], vertex.cP()[2]);
-	mesh.faces.reserve(file.face.size());
-	for (const FileFace& face : file.face) {
-		Face corners {};
-		for (int k = 0; k < 3; ++k)
-			corners[static_cast<std::size_t>(k)] =
-				static_cast<Index>(face.cV(k) - file.vert.data());
-		mesh.faces.push_back(corners);
-	}
-	return mesh;
-}
 
 void fill(FileMesh& file, const TriangleMesh& mesh, const MeshAttributes& attributes)
 {
@@ -174,16 +144,10 @@ void save_obj(
 }
 
 constexpr std::array<Format, 4> FORMATS = {{
-	{".ply", load_ply, save_ply},
-	{".obj",
-	 [](const std::string& /*path*/, std::string_view content) { return parse_obj(content); },
-	 save_obj},
-	{".off",
-	 [](const std::string& /*path*/, std::string_view content) { return parse_off(content); },
-	 save_off},
-	{".stl",
-	 [](const std::string& /*path*/, std::string_view content) { return parse_stl(content); },
-	 save_stl},
+	{".ply", parse_ply, save_ply},
+	{".obj", parse_obj, save_obj},
+	{".off", parse_off, save_off},
+	{".stl", parse_stl, save_stl},
 }};
 
 const Format& format_of(const std::filesystem::path& path)
@@ -211,7 +175,7 @@ std::string read_file(const std::string& path)
 	return content;
 }
 
-// vcglib reads and prints numbers by the locale of the program around it.
+// vcglib prints numbers by the locale of the program around it.
 class PlainNumbers {
 public:
 	PlainNumbers() : before_(std::setlocale(LC_NUMERIC, nullptr))
@@ -284,7 +248,7 @@ TriangleMesh load_mesh(const std::string& path)
 {
 	return naming_the_file(path, [&]() {
 		const Format& format = format_of(path);
-		return format.load(path, read_file(path));
+		return format.load(read_file(path));
 	});
 }
 

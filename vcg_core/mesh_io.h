@@ -10,7 +10,7 @@
 
 namespace orthopoly {
 
-/// Reads PLY (both kinds), OBJ, OFF or STL, told apart by the name's ending, through vcglib.
+/// Reads PLY (both kinds), OBJ, OFF or STL, told apart by the name's ending.
 ///
 /// Vertices and faces keep the order of the file; the corners of an STL file that have the same
 /// coordinates become one vertex (in the order of their first mention). Polygons are an error.
@@ -27,8 +27,9 @@ struct MeshAttributes {
 	std::vector<double> vertex_quality;
 };
 
-/// Writes PLY (binary, double precision), OBJ, OFF or STL, told apart by the name's ending.
-/// Throws FileError; nothing is left behind under the name where writing failed.
+/// Writes PLY (binary, double precision), OBJ, OFF or STL (binary), told apart by the name's
+/// ending; PLY and STL through vcglib. Throws FileError; nothing is left behind under the name
+/// where writing failed.
 void save_mesh(
 	const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "ply_check.h"
+#include "mesh_ply.h"
 
 #include "errors.h"
 #include "text_scanner.h"
@@ -10,14 +10,12 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace orthopoly {
 
 namespace {
-
-// vcglib reads the header in lines of at most this many characters.
-constexpr std::size_t LONGEST_HEADER_LINE = 500;
 
 struct Type {
 	std::string_view name;
@@ -136,16 +134,9 @@ Header read_header(std::string_view content)
 
 	Header header;
 	header.size = line_end + 1;
-	const std::string_view text = content.substr(0, header.size);
-	for (std::size_t begin = 0; begin < text.size();) {
-		const std::size_t after = text.find('\n', begin);
-		if (after - begin > LONGEST_HEADER_LINE)
-			throw FileError("has a header line of more than 500 characters");
-		begin = after + 1;
-	}
 
 	bool has_format = false;
-	TextScanner line(text);
+	TextScanner line(content.substr(0, header.size));
 	line.next_line();
 	while (line.next_line()) {
 		const std::string_view keyword = line.words().front();
@@ -170,7 +161,13 @@ Header read_header(std::string_view content)
 	return header;
 }
 
-/// Reads the values of the body one after the other.
+struct Number {
+	double real = 0;
+	// The same, where its type is one of whole numbers.
+	long long whole = 0;
+};
+
+/// Reads the numbers of the body one after the other.
 class Body {
 public:
 	Body(std::string_view content, const Header& header) :
@@ -178,21 +175,14 @@ public:
 	{
 	}
 
-	// Passes over a value that is none of ours. False at the end of the file.
-	bool skip(const Type& type)
+	// False at the end of the file.
+	bool read(const Type& type, Number& number)
 	{
-		long long whole = 0;
-		return read(type, whole);
-	}
-
-	// A whole number's value goes to `whole`. False at the end of the file.
-	bool read(const Type& type, long long& whole)
-	{
-		return encoding_ == Encoding::Text ? read_word(type, whole) : read_bytes(type, whole);
+		return encoding_ == Encoding::Text ? read_word(type, number) : read_bytes(type, number);
 	}
 
 private:
-	bool read_word(const Type& type, long long& whole)
+	bool read_word(const Type& type, Number& number)
 	{
 		constexpr std::string_view BLANKS = " \t\r\n\v\f";
 		const std::size_t begin = rest_.find_first_not_of(BLANKS);
@@ -201,15 +191,16 @@ private:
 		const std::size_t end = std::min(rest_.find_first_of(BLANKS, begin), rest_.size());
 		const std::string_view word = rest_.substr(begin, end - begin);
 		rest_.remove_prefix(end);
-		double real = 0;
-		if (type.is_whole ? !read_number(word, whole) : !read_number(word, real))
+		if (type.is_whole ? !read_number(word, number.whole) : !read_number(word, number.real))
 			throw FileError(
 				"has a word in its body that is not a number of the type " +
 				std::string(type.name));
+		if (type.is_whole)
+			number.real = static_cast<double>(number.whole);
 		return true;
 	}
 
-	bool read_bytes(const Type& type, long long& whole)
+	bool read_bytes(const Type& type, Number& number)
 	{
 		if (rest_.size() < type.size)
 			return false;
@@ -219,10 +210,22 @@ private:
 			bits = (bits << 8U) | static_cast<unsigned char>(rest_[at]);
 		}
 		rest_.remove_prefix(type.size);
-		const std::uint64_t sign = std::uint64_t(1) << (8 * type.size - 1);
-		whole = static_cast<long long>(bits);
-		if (type.is_signed && type.size < 8 && (bits & sign) != 0)
-			whole -= static_cast<long long>(sign) * 2;
+		if (type.is_whole) {
+			const auto range = static_cast<long long>(1) << (8 * type.size);
+			number.whole = static_cast<long long>(bits);
+			if (type.is_signed && number.whole >= range / 2)
+				number.whole -= range;
+			number.real = static_cast<double>(number.whole);
+		}
+		else if (type.size == sizeof(float)) {
+			const auto short_bits = static_cast<std::uint32_t>(bits);
+			float value = 0;
+			std::memcpy(&value, &short_bits, sizeof(value));
+			number.real = value;
+		}
+		else {
+			std::memcpy(&number.real, &bits, sizeof(bits));
+		}
 		return true;
 	}
 
@@ -230,85 +233,141 @@ private:
 	Encoding encoding_;
 };
 
-bool is_corner_list(const Element& element, const Property& property)
-{
-	return element.name == "face" && property.length_type != nullptr &&
-		   (property.name == "vertex_indices" || property.name == "vertex_index");
-}
-
-[[noreturn]] void cut_short(const Element& element, std::size_t index)
-{
-	throw FileError(
-		"ends at " + std::string(element.name) + " " + std::to_string(index) + " of " +
-		std::to_string(element.count) + "; the file is cut short");
-}
-
-/// Checks one list; false at the end of the file.
-bool check_list(Body& body, const Property& property)
-{
-	long long length = 0;
-	if (!body.read(*property.length_type, length))
-		return false;
-	if (length < 0)
-		throw FileError("has a list of " + std::to_string(length) + " values");
-	for (long long i = 0; i < length; ++i) {
-		if (!body.skip(*property.type))
-			return false;
+/// Takes what the elements have to say about the mesh.
+class Reader {
+public:
+	Reader(std::string_view content, const Header& header) :
+			body_(content, header), vertex_count_(header.count("vertex"))
+	{
+		for (const Element& element : header.elements)
+			read_element(element);
 	}
-	return true;
-}
 
-bool check_corners(Body& body, const Property& property, std::size_t face, std::size_t vertices)
-{
-	long long length = 0;
-	if (!body.read(*property.length_type, length))
-		return false;
-	if (length != 3)
-		throw FileError(
-			"face " + std::to_string(face) + " has " + std::to_string(length) +
-			" corners; only triangles can be read: triangulate the mesh first");
-	for (int k = 0; k < 3; ++k) {
-		long long vertex = 0;
-		if (!body.read(*property.type, vertex))
-			return false;
-		if (vertex < 0 || vertex >= static_cast<long long>(vertices))
-			throw FileError(
-				"face " + std::to_string(face) + " has vertex index " + std::to_string(vertex) +
-				", the mesh has " + std::to_string(vertices) +
-				" vertices; repair the face list first");
-	}
-	return true;
-}
+	TriangleMesh take_mesh() { return std::move(mesh_); }
 
-void check_element(Body& body, const Element& element, std::size_t vertices)
-{
-	for (std::size_t i = 0; i < element.count; ++i) {
-		for (const Property& property : element.properties) {
-			bool complete = false;
-			if (is_corner_list(element, property))
-				complete = check_corners(body, property, i, vertices);
-			else if (property.length_type != nullptr)
-				complete = check_list(body, property);
-			else
-				complete = body.skip(*property.type);
-			if (!complete)
-				cut_short(element, i);
+private:
+	void read_element(const Element& element)
+	{
+		if (element.name == "vertex")
+			check_vertex(element);
+		if (element.name == "face")
+			check_face(element);
+		for (std::size_t i = 0; i < element.count; ++i) {
+			for (const Property& property : element.properties) {
+				const bool complete = property.length_type != nullptr ?
+										  read_list(element, property) :
+										  read_value(element, property);
+				if (!complete)
+					throw FileError(
+						"ends at " + std::string(element.name) + " " + std::to_string(i) + " of " +
+						std::to_string(element.count) + "; the file is cut short");
+			}
+			if (element.name == "vertex")
+				mesh_.positions.push_back(point_);
 		}
 	}
-}
+
+	static bool is_coordinate(const Property& property)
+	{
+		return property.length_type == nullptr && axis(property) >= 0;
+	}
+
+	// 0 to 2 for a coordinate, else -1.
+	static int axis(const Property& property)
+	{
+		constexpr std::string_view AXES = "xyz";
+		return property.name.size() == 1 && AXES.find(property.name) != std::string_view::npos ?
+				   static_cast<int>(AXES.find(property.name)) :
+				   -1;
+	}
+
+	static bool is_corner_list(const Property& property)
+	{
+		return property.length_type != nullptr && property.type->is_whole &&
+			   (property.name == "vertex_indices" || property.name == "vertex_index");
+	}
+
+	static void check_vertex(const Element& element)
+	{
+		const auto coordinates =
+			std::count_if(element.properties.begin(), element.properties.end(), is_coordinate);
+		if (coordinates != 3)
+			throw FileError("has vertices without the properties x, y and z");
+	}
+
+	static void check_face(const Element& element)
+	{
+		const auto lists =
+			std::count_if(element.properties.begin(), element.properties.end(), is_corner_list);
+		if (element.count > 0 && lists != 1)
+			throw FileError("has faces without a list of whole numbers named vertex_indices");
+	}
+
+	// These return false at the end of the file.
+	bool read_value(const Element& element, const Property& property)
+	{
+		Number number;
+		if (!body_.read(*property.type, number))
+			return false;
+		if (element.name == "vertex" && is_coordinate(property))
+			point_[axis(property)] = number.real;
+		return true;
+	}
+
+	bool read_list(const Element& element, const Property& property)
+	{
+		Number length;
+		if (!body_.read(*property.length_type, length))
+			return false;
+		if (length.whole < 0)
+			throw FileError("has a list of " + std::to_string(length.whole) + " values");
+		if (element.name == "face" && is_corner_list(property))
+			return read_corners(property, length.whole);
+		Number passed_over;
+		for (long long i = 0; i < length.whole; ++i) {
+			if (!body_.read(*property.type, passed_over))
+				return false;
+		}
+		return true;
+	}
+
+	bool read_corners(const Property& property, long long length)
+	{
+		const auto face_name = [this]() { return "face " + std::to_string(mesh_.faces.size()); };
+		if (length != 3)
+			throw FileError(
+				face_name() + " has " + std::to_string(length) +
+				" corners; only triangles can be read: triangulate the mesh first");
+		Face corners {};
+		for (Index& corner : corners) {
+			Number vertex;
+			if (!body_.read(*property.type, vertex))
+				return false;
+			if (vertex.whole < 0 || vertex.whole >= static_cast<long long>(vertex_count_))
+				throw FileError(
+					face_name() + " has vertex index " + std::to_string(vertex.whole) +
+					", the mesh has " + std::to_string(vertex_count_) +
+					" vertices; repair the face list first");
+			corner = static_cast<Index>(vertex.whole);
+		}
+		mesh_.faces.push_back(corners);
+		return true;
+	}
+
+	Body body_;
+	std::size_t vertex_count_;
+	Point point_ = Point::Zero();
+	TriangleMesh mesh_;
+};
 
 } // namespace
 
-PlyCounts check_ply(std::string_view content)
+TriangleMesh parse_ply(std::string_view content)
 {
 	const Header header = read_header(content);
-	const PlyCounts counts = {header.count("vertex"), header.count("face")};
 	if (header.count("tristrips") > 0 || header.count("range_grid") > 0)
 		throw FileError("holds strips or a range grid; save it with a list of triangles instead");
-	Body body(content, header);
-	for (const Element& element : header.elements)
-		check_element(body, element, counts.vertices);
-	return counts;
+	return Reader(content, header).take_mesh();
 }
 
 } // namespace orthopoly

@@ -46,6 +46,11 @@ TEST_CASE("what is wrong with a mesh is named with its index", "[triangle_mesh]"
 		mesh.positions[3].z() = -std::numeric_limits<double>::infinity();
 		CHECK_THROWS_WITH(validate(mesh), Contains("vertex 3"));
 	}
+	SECTION("a coordinate out of all proportion")
+	{
+		mesh.positions[2].x() = -1e61;
+		CHECK_THROWS_WITH(validate(mesh), Contains("vertex 2") && Contains("1e60"));
+	}
 	SECTION("flags for another number of vertices")
 	{
 		mesh.fixed = {1, 0, 1};

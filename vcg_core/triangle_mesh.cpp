@@ -29,6 +29,9 @@ double longest_edge_squared(const std::vector<Point>& positions, const Face& fac
 // mostly rounding of coordinates that a host may keep in single precision.
 constexpr double DEGENERATE_RATIO = 1e-14;
 
+// Squares of areas still fit into a number then.
+constexpr double LARGEST_COORDINATE = 1e60;
+
 } // namespace
 
 void validate(const TriangleMesh& mesh)
@@ -38,6 +41,10 @@ void validate(const TriangleMesh& mesh)
 			throw InvalidMesh(
 				"vertex " + std::to_string(i) +
 				" has a coordinate that is not a finite number; remove or repair that vertex first");
+		if (mesh.positions[i].cwiseAbs().maxCoeff() > LARGEST_COORDINATE)
+			throw InvalidMesh(
+				"vertex " + std::to_string(i) +
+				" has a coordinate beyond 1e60; scale the mesh down or remove that vertex first");
 	}
 	for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
 		for (const Index vertex : mesh.faces[i]) {

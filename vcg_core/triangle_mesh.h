@@ -41,8 +41,8 @@ struct FaceGeometry {
 };
 
 /// Throws InvalidMesh where a face names a vertex that is not there or a coordinate is not
-/// finite, or where `fixed` is neither empty nor #V long. Faces without area, repeated faces,
-/// unreferenced vertices and non-manifold parts are fine.
+/// finite or beyond 1e60, or where `fixed` is neither empty nor #V long. Faces without area,
+/// repeated faces, unreferenced vertices and non-manifold parts are fine.
 void validate(const TriangleMesh& mesh);
 
 /// Twice the area times the unit normal of a face.

@@ -150,8 +150,7 @@ TEST_CASE("Turning all faces over turns the guide directions", "[guide_direction
 	for (Face& face : mesh.faces)
 		std::swap(face[0], face[1]);
 	const std::vector<Point> after = guides(StepFixture(mesh));
-	CHECK(
-		largest_difference(before, each(after, [](const Point& v) { return Point(-v); })) < 1e-12);
+	CHECK(largest_distance(before, each(after, [](const Point& v) { return Point(-v); })) < 1e-12);
 }
 
 TEST_CASE("Faces without a normal have no guide direction and no vote", "[guide_direction]")
@@ -186,7 +185,7 @@ TEST_CASE("Guide directions turn with the mesh and do not mind its scale", "[gui
 		const std::vector<Point> back = each(guides(StepFixture(moved)), [&](const Point& v) {
 			return Point(rotation.transpose() * v);
 		});
-		CHECK(largest_difference(back, expected) < 1e-9);
+		CHECK(largest_distance(back, expected) < 1e-9);
 	}
 }
 
@@ -197,8 +196,8 @@ TEST_CASE("Ring and sigma_theta matter", "[guide_direction]")
 	wider.ring = 2;
 	GuideDirectionOptions stricter;
 	stricter.sigma_theta = 10;
-	CHECK(largest_difference(guides(f), guides(f, wider)) > 1e-3);
-	CHECK(largest_difference(guides(f), guides(f, stricter)) > 1e-3);
+	CHECK(largest_distance(guides(f), guides(f, wider)) > 1e-3);
+	CHECK(largest_distance(guides(f), guides(f, stricter)) > 1e-3);
 }
 
 TEST_CASE("Defects do not keep guide directions from being directions", "[guide_direction]")

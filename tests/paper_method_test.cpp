@@ -49,7 +49,7 @@ TEST_CASE("The paper's method leaves a plane where it is", "[paper_method]")
 				return Point(scale * (rotation * p + Point::Constant(distance)));
 			});
 			const double rounding = 1e-15 * scale * (1 + distance);
-			CHECK(largest_difference(run(mesh).positions, mesh.positions) < 200 * rounding);
+			CHECK(largest_distance(run(mesh).positions, mesh.positions) < 200 * rounding);
 		}
 	}
 }
@@ -95,7 +95,7 @@ TEST_CASE("The paper's method turns, moves and grows with the mesh", "[paper_met
 			return Point(scale * (rotation * p + Point::Constant(distance)));
 		};
 		const TriangleMesh moved = with_positions(mesh, each(mesh.positions, there));
-		CHECK(largest_difference(run(moved).positions, each(expected, there)) < scale * tolerance);
+		CHECK(largest_distance(run(moved).positions, each(expected, there)) < scale * tolerance);
 	};
 	check(1, 0, 1e-10);
 	check(1e-6, 0, 1e-10);
@@ -204,7 +204,7 @@ TEST_CASE("Every parameter of the paper's method changes the result", "[paper_me
 		INFO(name);
 		DenoiseOptions options = paper_options();
 		change(options);
-		CHECK(largest_difference(run(mesh, options).positions, expected) > 1e-5);
+		CHECK(largest_distance(run(mesh, options).positions, expected) > 1e-5);
 	}
 }
 

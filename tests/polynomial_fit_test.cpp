@@ -108,18 +108,18 @@ TEST_CASE("A surface of the fit's own degrees is reproduced", "[polynomial_fit]"
 			values.emplace_back(
 				1 + column * column - 3 * row, column * row, 2 - column * column * row);
 	}
-	CHECK(largest_difference(fitted(values, 2, 1), values) < 1e-11);
-	CHECK(largest_difference(fitted(values, 1, 1), values) > 1);
-	CHECK(largest_difference(fitted(values, 2, 0), values) > 1);
+	CHECK(largest_distance(fitted(values, 2, 1), values) < 1e-11);
+	CHECK(largest_distance(fitted(values, 1, 1), values) > 1);
+	CHECK(largest_distance(fitted(values, 2, 0), values) > 1);
 }
 
 TEST_CASE("Order 0 is the mean, the highest orders interpolate", "[polynomial_fit]")
 {
 	const std::vector<Point> values = random_vectors(36);
 	const Point mean = std::accumulate(values.begin(), values.end(), Point(Point::Zero())) / 36;
-	CHECK(largest_difference(fitted(values, 0, 0), std::vector<Point>(36, mean)) < 1e-14);
-	CHECK(largest_difference(fitted(values, 5, 5), values) < 1e-13);
-	CHECK(largest_difference(fitted(values, 10, 10), values) < 1e-13);
+	CHECK(largest_distance(fitted(values, 0, 0), std::vector<Point>(36, mean)) < 1e-14);
+	CHECK(largest_distance(fitted(values, 5, 5), values) < 1e-13);
+	CHECK(largest_distance(fitted(values, 10, 10), values) < 1e-13);
 }
 
 TEST_CASE("Lists too short for the orders are fitted as well as they can be", "[polynomial_fit]")
@@ -138,7 +138,7 @@ TEST_CASE("Lists too short for the orders are fitted as well as they can be", "[
 TEST_CASE("Fitting again changes nothing", "[polynomial_fit]")
 {
 	const std::vector<Point> once = fitted(random_vectors(100), 2, 1);
-	CHECK(largest_difference(fitted(once, 2, 1), once) < 1e-13);
+	CHECK(largest_distance(fitted(once, 2, 1), once) < 1e-13);
 }
 
 TEST_CASE("What was fitted before does not matter", "[polynomial_fit]")
@@ -175,9 +175,9 @@ TEST_CASE("Every row of every fit is a vote", "[filter_normals]")
 		for (std::size_t row = 0; row < fit.values().size(); ++row)
 			sums[static_cast<std::size_t>(structures.faces()[row])] += fit.values()[row];
 	}
-	CHECK(largest_difference(found, each(sums, [](const Point& sum) {
-								 return sum.normalized();
-							 })) < 1e-13);
+	CHECK(largest_distance(found, each(sums, [](const Point& sum) {
+							   return sum.normalized();
+						   })) < 1e-13);
 }
 
 TEST_CASE("Normals of a clean cube stay as they are", "[filter_normals]")
@@ -185,7 +185,7 @@ TEST_CASE("Normals of a clean cube stay as they are", "[filter_normals]")
 	const StepFixture f(make_cube(3000));
 	const std::vector<Point> guides = guide_directions(f.workspace, f.geometry, {});
 	CHECK(
-		largest_difference(
+		largest_distance(
 			filter_normals(f.workspace, f.geometry.normals, guides, {}), f.geometry.normals) <
 		1e-14);
 }

@@ -3,10 +3,10 @@
 
 #include "noise.h"
 #include "shapes.h"
+#include "test_support.h"
 #include "workspace.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -72,28 +72,10 @@ std::vector<Point> each(std::vector<Point> points, Transform transform)
 	return points;
 }
 
-inline double largest_difference(const std::vector<Point>& a, const std::vector<Point>& b)
-{
-	double largest = a.size() == b.size() ? 0.0 : 1e300;
-	for (std::size_t i = 0; i < a.size() && i < b.size(); ++i)
-		largest = std::max(largest, (a[i] - b[i]).norm());
-	return largest;
-}
-
+/// One point, as `same_bits` of test_support.h does with many.
 inline bool same_bits(const Point& a, const Point& b)
 {
 	return std::memcmp(a.data(), b.data(), 3 * sizeof(double)) == 0;
-}
-
-inline bool same_bits(const std::vector<Point>& a, const std::vector<Point>& b)
-{
-	if (a.size() != b.size())
-		return false;
-	for (std::size_t i = 0; i < a.size(); ++i) {
-		if (!same_bits(a[i], b[i]))
-			return false;
-	}
-	return true;
 }
 
 } // namespace orthopoly

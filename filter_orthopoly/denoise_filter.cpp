@@ -21,7 +21,8 @@ FilterParameter compare_parameter()
 	parameter.label = "Compare with a reference";
 	parameter.tooltip =
 		"Also measures the mesh against the reference mesh below, before and after: the faces are "
-		"coloured by angular error, the figures go to the log and the output values. It changes "
+		"coloured by angular error, which is also their quality (degrees); the quality of a vertex is "
+		"its distance to the reference; the figures go to the log and the output values. It changes "
 		"nothing about the denoising.";
 	parameter.type = ParameterType::Boolean;
 	parameter.maximum = 1;
@@ -139,18 +140,15 @@ std::string DenoiseFilter::python_name() const
 std::string DenoiseFilter::info() const
 {
 	return "Removes noise from a triangle mesh and keeps edges, corners and fine detail. Only vertices "
-		   "move; faces stay as they are.<br><br>"
+		   "move; faces stay as they are.<br>"
 		   "Apply it as it is: the method <b>adaptive</b> estimates the noise and chooses everything "
 		   "else from the mesh. Where detail is lost, set the strength to gentle; where noise is left, "
 		   "to strong; for the ripples of a depth camera set the kind of noise to scanner. The method "
-		   "<b>paper</b> is the published one, with its own parameters.<br><br>"
-		   "Face normals are filtered by discrete orthogonal polynomials, fitted to the normals of "
-		   "non-local similar structures (faces nearby whose surroundings look the same way), and the "
-		   "vertices follow the filtered normals.<br>"
-		   "See: <b>\"Surface Smoothing based on Discrete Orthogonal Polynomial\"</b><br><br>"
-		   "If you have the true shape in another layer, compare with it: the faces are coloured by "
-		   "the angle between the normals (blue: none, red: the colour range and more), which is also "
-		   "their quality, in degrees; the quality of a vertex is its distance to the reference.";
+		   "<b>paper</b> is the published one: face normals are filtered by discrete orthogonal "
+		   "polynomials fitted to non-local similar structures, and the vertices follow.<br>"
+		   "If you have the true shape in another layer, compare with it: faces are coloured by the "
+		   "angle to it (blue: none, red: the colour range and more).<br>"
+		   "See: <b>\"Surface Smoothing based on Discrete Orthogonal Polynomial\"</b>";
 }
 
 Menu DenoiseFilter::menu() const

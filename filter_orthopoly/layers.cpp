@@ -174,6 +174,7 @@ void report_errors(FilterRun& run, const ErrorMeasures& errors, const std::strin
 			{prefix + "mean_angle", errors.mean_angle},
 			{prefix + "max_angle", errors.max_angle},
 			{prefix + "msae", errors.msae},
+			{prefix + "msae_without_folded", errors.msae_without_folded},
 			{prefix + "vertex_error", errors.vertex_error},
 			{prefix + "relative_vertex_error", errors.relative_vertex_error},
 			{prefix + "max_distance", errors.max_distance},
@@ -193,9 +194,9 @@ std::string describe_pairing(const ErrorMeasures& errors, const VcgArrays& array
 std::string describe_errors(const ErrorMeasures& errors)
 {
 	return "mean angle " + in_words(errors.mean_angle) + " degrees, largest " +
-		   in_words(errors.max_angle) + ", MSAE " + in_words(errors.msae) +
-		   " rad^2 (eq. 14), vertex error " + in_words(errors.vertex_error) +
-		   " (eq. 13) = " + in_words(errors.relative_vertex_error) +
+		   in_words(errors.max_angle) + ", MSAE " + in_words(errors.msae) + " rad^2 (eq. 14; " +
+		   in_words(errors.msae_without_folded) + " without folded faces), vertex error " +
+		   in_words(errors.vertex_error) + " (eq. 13) = " + in_words(errors.relative_vertex_error) +
 		   " mean edge lengths, largest distance " + in_words(errors.max_distance) + ", " +
 		   count_of(errors.folded_faces, "face", "faces") + " folded over";
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plugin_new_interface.h"
 
-#include "errors.h"
+#include "rich_values.h"
 
 #include <QAction>
 
@@ -16,94 +16,27 @@ using namespace orthopoly;
 
 namespace {
 
-QString text(const std::string& utf8)
+// The last argument puts a parameter behind the arrow of the dialog.
+template<class Rich, class... Values>
+void add(RichParameterList& list, const FilterParameter& p, const Values&... values)
 {
-	return QString::fromStdString(utf8);
+	list.addParam(Rich(text(p.name), values..., text(p.label), text(p.tooltip), p.advanced));
 }
 
-QStringList choices(const FilterParameter& parameter)
+void add_parameter(const FilterParameter& p, const MeshDocument& document, RichParameterList& list)
 {
-	QStringList list;
-	for (const std::string& choice : parameter.choices)
-		list.push_back(text(choice));
-	return list;
-}
-
-// How a kind of parameter is shown and read back.
-struct Kind {
-	void (*add)(const FilterParameter&, const MeshDocument&, RichParameterList&);
-	double (*read)(const RichParameterList&, const QString&);
-};
-
-template<class Rich, class Value>
-void add_value(const FilterParameter& p, const MeshDocument&, RichParameterList& list)
-{
-	list.addParam(Rich(
-		text(p.name),
-		static_cast<Value>(p.default_value),
-		text(p.label),
-		text(p.tooltip),
-		p.advanced));
-}
-
-void add_choice(const FilterParameter& p, const MeshDocument&, RichParameterList& list)
-{
-	list.addParam(RichEnum(
-		text(p.name),
-		static_cast<int>(p.default_value),
-		choices(p),
-		text(p.label),
-		text(p.tooltip),
-		p.advanced));
-}
-
-void add_layer(const FilterParameter& p, const MeshDocument& document, RichParameterList& list)
-{
-	list.addParam(RichMesh(
-		text(p.name),
-		static_cast<unsigned int>(p.default_value),
-		&document,
-		text(p.label),
-		text(p.tooltip),
-		p.advanced));
-}
-
-void add_length(const FilterParameter& p, const MeshDocument&, RichParameterList& list)
-{
-	list.addParam(RichLength(
-		text(p.name),
-		static_cast<Scalarm>(p.default_value),
-		Scalarm(0),
-		static_cast<Scalarm>(p.full_length),
-		text(p.label),
-		text(p.tooltip),
-		p.advanced));
-}
-
-Kind kind_of(const FilterParameter& parameter)
-{
-	using List = RichParameterList;
-	using Name = QString;
-	if (parameter.input == FilterParameter::Input::Layer)
-		return {add_layer, [](const List& l, const Name& n) { return double(l.getMeshId(n)); }};
-	if (parameter.input == FilterParameter::Input::Length)
-		return {add_length, [](const List& l, const Name& n) { return double(l.getAbsPerc(n)); }};
-	switch (parameter.type) {
-	case ParameterType::Boolean:
-		return {add_value<RichBool, bool>, [](const List& l, const Name& n) {
-					return l.getBool(n) ? 1.0 : 0.0;
-				}};
-	case ParameterType::Integer:
-		return {add_value<RichInt, int>, [](const List& l, const Name& n) {
-					return double(l.getInt(n));
-				}};
-	case ParameterType::Choice:
-		return {add_choice, [](const List& l, const Name& n) { return double(l.getEnum(n)); }};
-	case ParameterType::Real: break;
+	const auto number = static_cast<Scalarm>(p.default_value);
+	const auto whole = static_cast<int>(p.default_value);
+	if (p.input == FilterParameter::Input::Layer)
+		return add<RichMesh>(list, p, static_cast<unsigned int>(whole), &document);
+	if (p.input == FilterParameter::Input::Length)
+		return add<RichLength>(list, p, number, Scalarm(0), static_cast<Scalarm>(p.full_length));
+	switch (p.type) {
+	case ParameterType::Boolean: return add<RichBool>(list, p, whole != 0);
+	case ParameterType::Integer: return add<RichInt>(list, p, whole);
+	case ParameterType::Choice: return add<RichEnum>(list, p, whole, choices(p));
+	case ParameterType::Real: return add<RichFloat>(list, p, number);
 	}
-	return {add_value<RichFloat, Scalarm>, [](const List& l, const Name& n) {
-				return as_written(float(l.getFloat(n)));
-			}};
 }
 
 ParameterValues
@@ -113,12 +46,13 @@ read_values(const Filter& filter, const RichParameterList& list, MeshDocument& d
 	for (const FilterParameter& parameter : filter.parameters(document)) {
 		const QString name = text(parameter.name);
 		// A script may leave parameters out.
-		const double value =
-			list.hasParameter(name) ? kind_of(parameter).read(list, name) : parameter.default_value;
+		const bool given = list.hasParameter(name);
 		if (parameter.input == FilterParameter::Input::Layer)
-			values.layers[parameter.name] = document.getMesh(static_cast<unsigned int>(value));
+			values.layers[parameter.name] = document.getMesh(
+				given ? list.getMeshId(name) : static_cast<unsigned int>(parameter.default_value));
 		else
-			values.numbers[parameter.name] = value;
+			values.numbers[parameter.name] =
+				given ? read_number(parameter, list) : parameter.default_value;
 	}
 	return values;
 }
@@ -186,7 +120,7 @@ FilterOrthopolyPlugin::initParameterList(const QAction* action, const MeshDocume
 	may_change_ = filter.may_change(document);
 	RichParameterList list;
 	for (const FilterParameter& parameter : filter.parameters(document))
-		kind_of(parameter).add(parameter, document, list);
+		add_parameter(parameter, document, list);
 	return list;
 }
 
@@ -214,6 +148,7 @@ std::map<std::string, QVariant> FilterOrthopolyPlugin::applyFilter(
 		throw;
 	}
 	catch (const std::exception& error) {
+		log(GLLogStream::WARNING, "%s", error.what());
 		throw MLException(text(error.what()));
 	}
 }

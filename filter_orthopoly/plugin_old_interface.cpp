@@ -1,94 +1,39 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plugin_old_interface.h"
 
-#include "errors.h"
+#include "rich_values.h"
 
 #include <QAction>
+#include <locale>
+#include <sstream>
 
 using namespace orthopoly;
 
 namespace {
 
-QString text(const std::string& utf8)
+template<class Rich, class... Values>
+void add(RichParameterList& list, const FilterParameter& p, const Values&... values)
 {
-	return QString::fromStdString(utf8);
+	list.addParam(Rich(text(p.name), values..., text(p.label), text(p.tooltip)));
 }
 
-QStringList choices(const FilterParameter& parameter)
+void add_parameter(const FilterParameter& p, MeshDocument& document, RichParameterList& list)
 {
-	QStringList list;
-	for (const std::string& choice : parameter.choices)
-		list.push_back(text(choice));
-	return list;
-}
-
-// How a kind of parameter is shown and read back. A layer is read as a mesh, not as a number.
-struct Kind {
-	void (*add)(const FilterParameter&, MeshDocument&, RichParameterList&);
-	double (*read)(const RichParameterList&, const QString&);
-};
-
-template<class Rich, class Value>
-void add_value(const FilterParameter& p, MeshDocument&, RichParameterList& list)
-{
-	list.addParam(
-		Rich(text(p.name), static_cast<Value>(p.default_value), text(p.label), text(p.tooltip)));
-}
-
-void add_choice(const FilterParameter& p, MeshDocument&, RichParameterList& list)
-{
-	list.addParam(RichEnum(
-		text(p.name),
-		static_cast<int>(p.default_value),
-		choices(p),
-		text(p.label),
-		text(p.tooltip)));
-}
-
-void add_layer(const FilterParameter& p, MeshDocument& document, RichParameterList& list)
-{
-	// The host insists on a mesh of the document, where it is given one.
-	const bool empty = document.mm() == nullptr;
-	MeshModel* layer = empty ? nullptr : document.getMesh(static_cast<int>(p.default_value));
-	list.addParam(
-		RichMesh(text(p.name), layer, empty ? nullptr : &document, text(p.label), text(p.tooltip)));
-}
-
-void add_length(const FilterParameter& p, MeshDocument&, RichParameterList& list)
-{
-	list.addParam(RichAbsPerc(
-		text(p.name),
-		static_cast<float>(p.default_value),
-		0.0f,
-		static_cast<float>(p.full_length),
-		text(p.label),
-		text(p.tooltip)));
-}
-
-Kind kind_of(const FilterParameter& parameter)
-{
-	using List = RichParameterList;
-	using Name = QString;
-	if (parameter.input == FilterParameter::Input::Layer)
-		return {add_layer, nullptr};
-	if (parameter.input == FilterParameter::Input::Length)
-		return {add_length, [](const List& l, const Name& n) { return double(l.getAbsPerc(n)); }};
-	switch (parameter.type) {
-	case ParameterType::Boolean:
-		return {add_value<RichBool, bool>, [](const List& l, const Name& n) {
-					return l.getBool(n) ? 1.0 : 0.0;
-				}};
-	case ParameterType::Integer:
-		return {add_value<RichInt, int>, [](const List& l, const Name& n) {
-					return double(l.getInt(n));
-				}};
-	case ParameterType::Choice:
-		return {add_choice, [](const List& l, const Name& n) { return double(l.getEnum(n)); }};
-	case ParameterType::Real: break;
+	const auto number = static_cast<float>(p.default_value);
+	const auto whole = static_cast<int>(p.default_value);
+	if (p.input == FilterParameter::Input::Layer) {
+		// The host insists on a mesh of the document, where it is given one.
+		MeshModel* layer = document.mm() == nullptr ? nullptr : document.getMesh(whole);
+		return add<RichMesh>(list, p, layer, layer == nullptr ? nullptr : &document);
 	}
-	return {add_value<RichFloat, float>, [](const List& l, const Name& n) {
-				return as_written(l.getFloat(n));
-			}};
+	if (p.input == FilterParameter::Input::Length)
+		return add<RichAbsPerc>(list, p, number, 0.0f, static_cast<float>(p.full_length));
+	switch (p.type) {
+	case ParameterType::Boolean: return add<RichBool>(list, p, whole != 0);
+	case ParameterType::Integer: return add<RichInt>(list, p, whole);
+	case ParameterType::Choice: return add<RichEnum>(list, p, whole, choices(p));
+	case ParameterType::Real: return add<RichFloat>(list, p, number);
+	}
 }
 
 ParameterValues
@@ -96,11 +41,10 @@ read_values(const Filter& filter, const RichParameterList& list, MeshDocument& d
 {
 	ParameterValues values;
 	for (const FilterParameter& parameter : filter.parameters(document)) {
-		const QString name = text(parameter.name);
 		if (parameter.input == FilterParameter::Input::Layer)
-			values.layers[parameter.name] = list.getMesh(name);
+			values.layers[parameter.name] = list.getMesh(text(parameter.name));
 		else
-			values.numbers[parameter.name] = kind_of(parameter).read(list, name);
+			values.numbers[parameter.name] = read_number(parameter, list);
 	}
 	return values;
 }
@@ -157,7 +101,7 @@ void FilterOrthopolyPlugin::initParameterSet(
 	const Filter& filter = filter_of(action);
 	changed_ = filter.may_change(document);
 	for (const FilterParameter& parameter : filter.parameters(document))
-		kind_of(parameter).add(parameter, document, parameters);
+		add_parameter(parameter, document, parameters);
 }
 
 bool FilterOrthopolyPlugin::applyFilter(
@@ -174,10 +118,12 @@ bool FilterOrthopolyPlugin::applyFilter(
 		apply_filter(filter, run);
 		changed_ = run.changed;
 		// This host has no output values for its scripts: the log tells them.
-		for (const auto& [name, value] : run.outputs) {
-			const double number = std::visit([](auto n) { return static_cast<double>(n); }, value);
-			Log(GLLogStream::FILTER, "%s = %.9g", name.c_str(), number);
-		}
+		std::ostringstream outputs;
+		outputs.imbue(std::locale::classic());
+		outputs.precision(9);
+		for (const auto& [name, value] : run.outputs)
+			std::visit([&](auto number) { outputs << ' ' << name << '=' << number; }, value);
+		run.log("output values:" + outputs.str());
 		return true;
 	}
 	catch (const std::exception& error) {

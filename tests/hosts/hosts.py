@@ -89,9 +89,9 @@ class MeshLabServer:
         log = done.stdout + done.stderr
         # 255 is how it reports a failed script; anything else that is not 0 is a crash.
         assert done.returncode in (0, 255), f"meshlabserver ended with {done.returncode}:\n{log}"
-        outputs = {
-            name: float(value) for name, value in re.findall(r"(\w+) = ([-+.\deE]+|nan|inf)\n", log)
-        }
+        told = re.findall(r"output values:(.*)", log)
+        words = [word.split("=") for word in told[-1].split()] if told else []
+        outputs = {name: float(value) for name, value in words}
         ok = done.returncode == 0 and output.is_file()
         return Outcome(ok, log, ply.read(output) if ok else None, outputs)
 

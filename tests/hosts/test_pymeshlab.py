@@ -21,7 +21,8 @@ DENOISE_OUTPUTS = {
     "moved_vertices": int, "mean_displacement": float, "max_displacement": float,
 }
 ERROR_OUTPUTS = {
-    "mean_angle": float, "max_angle": float, "msae": float, "vertex_error": float,
+    "mean_angle": float, "max_angle": float, "msae": float,
+    "msae_without_folded": float, "vertex_error": float,
     "relative_vertex_error": float, "max_distance": float, "folded_faces": int,
     "measured_faces": int,
 }
@@ -207,3 +208,93 @@ def test_a_document_without_layers_is_refused(pymeshlab, tmp_path, filter_name):
     python_name = next(e["python_name"] for e in mlx.TABLE["filters"] if e["name"] == filter_name)
     results, _ = pymeshlab.run_steps(tmp_path, [apply(python_name)])
     assert not results[0]["ok"] and "mesh" in results[0]["error"]
+
+
+# A value other than the default for every parameter, and what has to be set beside it to matter.
+CHANGES = {
+    DENOISE: [
+        ("method", "paper", {}),
+        ("strength", "strong", {}),
+        ("noise_type", "scanner", {}),
+        ("noise_level", 0.5, {}),
+        ("iterations", 7, {"method": "paper"}),
+        ("keep_boundary", True, {"method": "paper"}),
+        ("only_selected", True, {"method": "paper"}),
+        ("compare_with_reference", True, {}),
+        ("reference", 1, {"compare_with_reference": True}),
+        ("max_angle", 90, {"compare_with_reference": True}),
+        ("vertex_iterations", 25, {"method": "paper"}),
+        ("structure_ring", 2, {"method": "paper"}),
+        ("cos_threshold", 0.9, {"method": "paper"}),
+        ("cos_threshold_increment", 0.2, {"method": "paper"}),
+        ("guide_ring", 3, {"method": "paper"}),
+        ("sigma_theta", 10, {"method": "paper"}),
+        ("order_x", 4, {"method": "paper"}),
+        ("order_y", 3, {"method": "paper"}),
+    ],
+    ERROR: [("reference", 1, {}), ("max_angle", 90, {}), ("max_distance", {"absolute": 0.01}, {})],
+    NOISE: [
+        ("sigma", 0.1, {}),
+        ("direction", "normal", {}),
+        ("impulsive_share", 0.5, {}),
+        ("seed", 2, {}),
+        ("only_selected", True, {}),
+    ],
+}
+# The one that must not.
+WITHOUT_EFFECT = {"threads"}
+
+
+@pytest.fixture
+def half_open(tmp_path):
+    """Two references and a noisy mesh with an open boundary, its first faces selected by the caller."""
+    positions, faces = shapes.cube()
+    faces = faces[: len(faces) * 5 // 6]
+    return [
+        ply.write(tmp_path / "clean.ply", positions, faces),
+        ply.write(tmp_path / "other.ply", shapes.with_noise(positions, 0.01, seed=8), faces),
+        ply.write(tmp_path / "noisy.ply", shapes.with_noise(positions, 0.03), faces),
+    ]
+
+
+@pytest.mark.parametrize("entry", mlx.TABLE["filters"], ids=lambda entry: entry["python_name"])
+def test_every_parameter_changes_the_result(pymeshlab, tmp_path, script, half_open, entry):
+    name = entry["python_name"]
+    changes = CHANGES[name]
+    assert {p["name"] for p in entry["parameters"]} == {c[0] for c in changes} | (
+        WITHOUT_EFFECT & {p["name"] for p in entry["parameters"]}
+    )
+    select = script((mlx.SELECT, {"condSelect": "(fi < 700)"}))
+    steps, pairs = [], []
+
+    def run(arguments):
+        path = tmp_path / f"{len(pairs)}-{len(steps)}.npz"
+        # The layers are loaded anew each time, so ids count on.
+        first = 3 * sum(step["do"] == "save" for step in steps)
+        given = {"only_selected": False, **arguments} if name != ERROR else dict(arguments)
+        if any(p["name"] == "reference" for p in entry["parameters"]):
+            given["reference"] = first + given.get("reference", 0)
+        steps.extend(load(*half_open) + [{"do": "script", "path": select}, apply(name, **given)])
+        steps.append({"do": "save", "path": path})
+        return path
+
+    for parameter, value, beside in changes:
+        pairs.append((parameter, run(beside), run({**beside, parameter: value})))
+    outputs_of(pymeshlab, tmp_path, steps)
+    unchanged = [name for name, *paths in pairs if same(*map(np.load, paths))]
+    assert not unchanged
+
+
+def same(a, b):
+    return a.files == b.files and all(np.array_equal(a[name], b[name]) for name in a.files)
+
+
+def test_threads_do_not_change_the_result(pymeshlab, tmp_path, clean_and_noisy):
+    saved = [tmp_path / f"{threads}.npz" for threads in (1, 2, 4)]
+    steps = []
+    for threads, path in zip((1, 2, 4), saved):
+        steps += load(clean_and_noisy[1])
+        steps += [apply(DENOISE, threads=threads), {"do": "save", "path": path}]
+    outputs_of(pymeshlab, tmp_path, steps)
+    one, two, four = (np.load(path) for path in saved)
+    assert same(one, two) and same(one, four)

@@ -24,7 +24,9 @@ endif()
 if(ORTHOPOLY_SANITIZE)
 	# As an option each (a list), so that -DORTHOPOLY_SANITIZE=address,undefined stays one argument.
 	add_compile_options(
-		-fsanitize=${ORTHOPOLY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g1)
+		-fsanitize=${ORTHOPOLY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g1
+		# The instrumented code misleads it.
+		-Wno-maybe-uninitialized)
 	add_link_options(-fsanitize=${ORTHOPOLY_SANITIZE})
 endif()
 

@@ -248,7 +248,8 @@ TEST_CASE("Progress of the paper's method is told in words", "[paper_method]")
 	CHECK(last == 100);
 	for (const std::string iteration : {"1", "2", "3"}) {
 		for (const std::string step : {"guide directions", "fitting normals", "moving vertices"}) {
-			const std::string expected = "iteration " + iteration + " of 3: " + step;
+			std::string expected = "iteration ";
+			expected.append(iteration).append(" of 3: ").append(step);
 			INFO(expected);
 			CHECK(std::count(words.begin(), words.end(), expected) == 1);
 		}

@@ -42,7 +42,8 @@ Execution::Execution(int threads, Progress& progress) : progress_(progress), thr
 {
 	if (threads < 0)
 		throw InvalidParameter(
-			"threads is " + std::to_string(threads) + "; give 1 or more, or 0 for one per processor");
+			"threads is " + std::to_string(threads) +
+			"; give 1 or more, or 0 for one per processor");
 	if (threads_ == 0)
 		threads_ = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 	if (threads_ > 1)

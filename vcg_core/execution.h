@@ -12,8 +12,7 @@
 namespace orthopoly {
 
 /// Thrown inside the library when the caller asked to stop; `denoise` turns it into a status.
-struct Cancelled {
-};
+struct Cancelled {};
 
 /// The threads a computation runs on, and the way it reports progress and hears of a cancel.
 ///
@@ -21,8 +20,8 @@ struct Cancelled {
 /// same bit for bit on any number of threads.
 class Execution {
 public:
-	/// Part of a loop: indices [begin, end), on worker 0 to threads() - 1. A worker runs one part at
-	/// a time, so scratch memory may be kept per worker.
+	/// Part of a loop: indices [begin, end), on worker 0 to threads() - 1. A worker runs one part
+	/// at a time, so scratch memory may be kept per worker.
 	using Body = std::function<void(Index begin, Index end, int worker)>;
 
 	/// @param threads  0 means one per processor. Throws InvalidParameter below 0.

@@ -39,7 +39,7 @@ void add_mesh(TriangleMesh& mesh, const TriangleMesh& other, const Point& offset
 {
 	const Index first = mesh.vertex_count();
 	for (const Point& point : other.positions)
-		mesh.positions.push_back(point + offset);
+		mesh.positions.emplace_back(point + offset);
 	for (const Face& face : other.faces)
 		mesh.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
 }

@@ -121,6 +121,10 @@ def test_info_counts_defects(meshes):
     part = info("part.ply")
     assert part["components"] == 1 and part["boundary_vertices"] == 0
     assert part["mean_edge_length"] > 0
+    assert part["estimated_noise"] < 0.02
+    # Noise in a random direction has this share of itself along the normal.
+    assert 0.07 < info("noisy.ply")["estimated_noise"] < 0.15
+    assert "estimated_noise" not in info("points_only.ply")
     assert info("degenerate_face.ply")["degenerate_faces"] == 2
     assert info("nan_coordinate.ply")["not_finite_vertices"] == 1
     assert info("empty.ply")["faces"] == 0

@@ -5,8 +5,10 @@
 #include "measures.h"
 #include "mesh_io.h"
 #include "noise.h"
+#include "noise_level.h"
 #include "parameters.h"
 #include "terminal.h"
+#include "workspace.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -151,8 +153,7 @@ void print_measures(const std::vector<const ErrorMeasures*>& columns)
 		{"mean angle (degrees)", [](const ErrorMeasures& m) { return m.mean_angle; }},
 		{"largest angle (degrees)", [](const ErrorMeasures& m) { return m.max_angle; }},
 		{"MSAE (radians squared)", [](const ErrorMeasures& m) { return m.msae; }},
-		{"MSAE, folded left out",
-		 [](const ErrorMeasures& m) { return m.msae_without_folded; }},
+		{"MSAE, folded left out", [](const ErrorMeasures& m) { return m.msae_without_folded; }},
 		{"E_v", [](const ErrorMeasures& m) { return m.vertex_error; }},
 		{"E_v / mean edge length", [](const ErrorMeasures& m) { return m.relative_vertex_error; }},
 		{"largest distance", [](const ErrorMeasures& m) { return m.max_distance; }},
@@ -284,6 +285,16 @@ int run_measure(const MeasureArguments& arguments)
 	return 0;
 }
 
+// Along the normal, in mean edge lengths.
+double estimated_noise(const TriangleMesh& mesh)
+{
+	validate(mesh);
+	Progress progress;
+	Execution execution(0, progress);
+	const Workspace workspace(mesh, execution);
+	return estimate_noise_level(workspace, mesh.positions);
+}
+
 int run_info(const InfoArguments& arguments)
 {
 	const TriangleMesh mesh = load_mesh(arguments.input);
@@ -297,6 +308,8 @@ int run_info(const InfoArguments& arguments)
 	json["unreferenced_vertices"] = found.unreferenced_vertices;
 	json["non_manifold_edges"] = found.non_manifold_edges;
 	json["not_finite_vertices"] = found.not_finite_vertices;
+	if (found.not_finite_vertices == 0 && found.degenerate_faces < mesh.face_count())
+		json["estimated_noise"] = estimated_noise(mesh);
 	if (arguments.json) {
 		std::cout << json.dump(2) << "\n";
 		return 0;

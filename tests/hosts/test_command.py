@@ -152,6 +152,8 @@ def test_info_counts_defects(meshes):
     (["denoise", "{folder}/points_only.ply", "{out}"], "218 vertices and no faces"),
     (["denoise", "{folder}/empty.ply", "{out}"], "no faces"),
     (["denoise", "{folder}/nan_coordinate.ply", "{out}"], "vertex 7"),
+    (["denoise", "{noisy}", "{out}", "--reference", "{folder}/points_only.ply"], "reference"),
+    (["denoise", "{noisy}", "{out}", "--reference", "{folder}/none.ply"], "none.ply"),
     (["noise", "{folder}/part.ply", "{out}"], "--sigma"),
     (["noise", "{folder}/part.ply", "{out}", "--sigma", "-1"], "sigma is -1"),
     (["noise", "{folder}/part.ply", "{out}", "--sigma", "0.1", "--kind", "pink"], "'pink'"),

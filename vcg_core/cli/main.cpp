@@ -196,10 +196,14 @@ int run_denoise(const DenoiseArguments& arguments)
 	const DenoiseOptions options = denoise_options(arguments);
 	validate(options);
 	check_savable(arguments.output);
-	TriangleMesh mesh = load_mesh(arguments.input);
+	const TriangleMesh mesh = load_mesh(arguments.input);
 	std::optional<TriangleMesh> reference;
-	if (!arguments.reference.empty())
+	std::optional<ErrorMeasures> before;
+	if (!arguments.reference.empty()) {
 		reference = load_mesh(arguments.reference);
+		// Now rather than at the end: a reference that will not do is refused before the work.
+		before = measure(mesh, *reference);
+	}
 
 	catch_interrupt();
 	Progress progress = terminal_progress();
@@ -216,12 +220,9 @@ int run_denoise(const DenoiseArguments& arguments)
 	denoised.positions = result.positions;
 	save_mesh(arguments.output, denoised);
 
-	std::optional<ErrorMeasures> before;
 	std::optional<ErrorMeasures> after;
-	if (reference) {
-		before = measure(mesh, *reference);
+	if (reference)
 		after = measure(denoised, *reference);
-	}
 	if (arguments.json) {
 		Json parameters;
 		for (const Parameter<DenoiseOptions>& parameter : denoise_parameters())

@@ -6,8 +6,8 @@
 
 namespace orthopoly {
 
-/// The adaptive method: like the paper's, but structures and polynomials live on the surface itself,
-/// and every parameter follows from the estimated noise.
+/// The adaptive method: like the paper's, but structures and polynomials live on the surface
+/// itself, and every parameter follows from the estimated noise.
 ///
 /// Fills in the positions, the status, the estimated noise, the resolved options and the iterations
 /// done. Reports progress from 0.05 on; throws Cancelled.

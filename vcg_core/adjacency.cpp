@@ -19,7 +19,8 @@ bool first_mention(const Face& face, std::size_t k)
 	return (k == 0 || face[k] != face[0]) && (k != 2 || face[2] != face[1]);
 }
 
-// An edge as one of its faces runs along it: its ends in ascending order, and whether they were swapped.
+// An edge as one of its faces runs along it: its ends in ascending order, and whether they were
+// swapped.
 struct DirectedEdge {
 	Index low;
 	Index high;

@@ -19,7 +19,8 @@ struct ClosestPoint {
 /// Finds closest points on a whole mesh, through vcglib's spatial index.
 class ClosestPointIndex {
 public:
-	/// Throws InvalidMesh for a mesh without a face that has an area. The mesh may go away afterwards.
+	/// Throws InvalidMesh for a mesh without a face that has an area. The mesh may go away
+	/// afterwards.
 	explicit ClosestPointIndex(const TriangleMesh& mesh);
 	~ClosestPointIndex();
 	ClosestPointIndex(ClosestPointIndex&&) noexcept;

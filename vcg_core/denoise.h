@@ -54,8 +54,8 @@ struct DenoiseOptions {
 	std::optional<double> cos_threshold;
 	/// Added to it after each iteration (delta d).
 	std::optional<double> cos_threshold_increment;
-	/// Paper: orders a and b of the polynomials along and across the matrix of eq. 11. The paper names
-	/// neither these nor r and R; the defaults are what measured best (polynomial_fit.h).
+	/// Paper: orders a and b of the polynomials along and across the matrix of eq. 11. The paper
+	/// names neither these nor r and R; the defaults are what measured best (polynomial_fit.h).
 	int order_x = 2;
 	int order_y = 0;
 	/// Threads to run on; 0 means one per processor. Does not change the result.

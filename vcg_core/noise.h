@@ -30,10 +30,10 @@ struct NoiseOptions {
 
 /// The positions with noise on them, #V. Fixed vertices stay bit for bit.
 ///
-/// Same mesh, options and seed: same result on every platform (the generator, the transformation to a
-/// Gaussian and the order of the draws are all fixed here; the standard library's distributions
-/// are not). Throws InvalidParameter for an option out of its range (parameters.h), InvalidMesh for a
-/// mesh without faces, with a coordinate that is not finite or an index out of range.
+/// Same mesh, options and seed: same result on every platform (the generator, the transformation to
+/// a Gaussian and the order of the draws are all fixed here; the standard library's distributions
+/// are not). Throws InvalidParameter for an option out of its range (parameters.h), InvalidMesh for
+/// a mesh without faces, with a coordinate that is not finite or an index out of range.
 std::vector<Point> add_noise(const TriangleMesh& mesh, const NoiseOptions& options);
 
 } // namespace orthopoly

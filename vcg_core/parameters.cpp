@@ -114,7 +114,7 @@ std::string accepted_values(const ParameterInfo& info)
 	}
 	else {
 		text = std::string(info.type == ParameterType::Integer ? "a whole number" : "a number") +
-			" from " + number_text(info.minimum) + " to " + number_text(info.maximum);
+			   " from " + number_text(info.minimum) + " to " + number_text(info.maximum);
 	}
 	return info.can_be_automatic ? text + ", or -1 for automatic" : text;
 }

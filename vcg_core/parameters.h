@@ -67,9 +67,9 @@ const ParameterTable<NoiseOptions>& noise_parameters();
 template<class Options>
 void set_parameter(
 	const ParameterTable<Options>& table,
-	const std::string&             name,
-	const std::string&             text,
-	Options&                       options)
+	const std::string& name,
+	const std::string& text,
+	Options& options)
 {
 	const auto* parameter = static_cast<const Parameter<Options>*>(nullptr);
 	std::string known;

@@ -20,7 +20,7 @@ std::vector<Index> sample_by_value(const std::vector<double>& values, Index want
 	std::vector<Index> sample;
 	const Index every = wanted > 0 ? count / wanted : 1;
 	const double mean = std::accumulate(values.begin(), values.end(), 0.0) /
-		std::max(1.0, static_cast<double>(count));
+						std::max(1.0, static_cast<double>(count));
 	if (every > 1 && mean > 0) {
 		for (Index i = 0; i < count; ++i) {
 			const double digits =
@@ -41,8 +41,8 @@ double quantile(std::vector<double>& values, double share)
 {
 	if (values.empty())
 		return 0;
-	const auto position = static_cast<std::ptrdiff_t>(
-		share * static_cast<double>(values.size() - 1));
+	const auto position =
+		static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
 	const auto nth = values.begin() + position;
 	std::nth_element(values.begin(), nth, values.end());
 	return *nth;

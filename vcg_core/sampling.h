@@ -9,8 +9,8 @@ namespace orthopoly {
 
 /// Indices of about `wanted` items, or all where there are not many more.
 ///
-/// Which ones depends on the items' values (areas, say) and not on their numbers, so that a mesh with
-/// its faces in another order gives the same sample: the value's digits serve as the dice.
+/// Which ones depends on the items' values (areas, say) and not on their numbers, so that a mesh
+/// with its faces in another order gives the same sample: the value's digits serve as the dice.
 /// @param values positive numbers, one an item
 std::vector<Index> sample_by_value(const std::vector<double>& values, Index wanted);
 

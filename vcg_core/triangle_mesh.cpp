@@ -86,8 +86,8 @@ FaceGeometry face_geometry(const std::vector<Point>& positions, const std::vecto
 		const Point cross = face_cross_product(positions, face);
 		const double length = cross.norm();
 		geometry.areas[i] = 0.5 * length;
-		geometry.centroids[i] = (corner(positions, face, 0) + corner(positions, face, 1) +
-								 corner(positions, face, 2)) /
+		geometry.centroids[i] =
+			(corner(positions, face, 0) + corner(positions, face, 1) + corner(positions, face, 2)) /
 			3.0;
 		geometry.normals[i] =
 			is_degenerate(positions, face) ? Point(Point::Zero()) : Point(cross / length);

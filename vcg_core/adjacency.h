@@ -24,7 +24,8 @@ struct IndexLists {
 	}
 	Index size(Index list) const
 	{
-		return offsets[static_cast<std::size_t>(list) + 1] - offsets[static_cast<std::size_t>(list)];
+		return offsets[static_cast<std::size_t>(list) + 1] -
+			   offsets[static_cast<std::size_t>(list)];
 	}
 };
 
@@ -54,6 +55,8 @@ public:
 	void grow();
 
 	const std::vector<Index>& faces() const { return faces_; }
+	/// The outermost ring collected.
+	int rings() const { return static_cast<int>(ends_.size()) - 1; }
 	/// Number of faces within ring k (so k = 0 gives 1).
 	std::size_t count_within(int ring) const { return ends_[static_cast<std::size_t>(ring)]; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "noise_level.h"
 
+#include "prefilter.h"
 #include "sampling.h"
 
 #include <Eigen/Cholesky>
@@ -12,14 +13,15 @@ namespace orthopoly {
 
 namespace {
 
-// Terms of a cubic polynomial in two variables: the lowest degree that takes ordinary curvature and its
-// change out of the residual.
+// Terms of a cubic polynomial in two variables: the lowest degree that takes ordinary curvature and
+// its change out of the residual.
 constexpr int TERMS = 10;
 
 // Fewer degrees of freedom than this make a residual variance mean little.
 constexpr std::size_t FEWEST_FREE = 4;
 
-// The share of the residual variances that is taken as free of features, which only ever add to them.
+// The share of the residual variances that is taken as free of features, which only ever add to
+// them.
 constexpr double QUANTILE = 0.35;
 
 // Root of that quantile of chi-square over nine degrees of freedom (a 2-ring of 19 vertices), over
@@ -28,6 +30,9 @@ constexpr double QUANTILE_RATIO = 0.89;
 
 // The quantile of so many variances is steady to about one per cent.
 constexpr Index SAMPLES = 20000;
+
+// Taubin pairs after which the normals of a mesh with noise of half an edge length are steady.
+constexpr double SMOOTHING_PAIRS = 4;
 
 constexpr Index GRAIN = 64;
 
@@ -46,18 +51,24 @@ void append_neighbors(const Workspace& workspace, Index vertex, std::vector<Inde
 	}
 }
 
-// Residual variance of a cubic height polynomial over the 2-ring of a vertex; negative where there is none.
+/// The mesh as given, and smoothed.
+struct Surfaces {
+	const std::vector<Point>& noisy;
+	/// Gives the normals and where in the plane across them a vertex lies: read off the noisy
+	/// mesh, both would hide a part of strong noise from the residual.
+	const std::vector<Point>& smooth;
+};
+
+// Residual variance of a cubic height polynomial over the 2-ring of a vertex; negative where there
+// is none.
 double residual_variance(
-	const Workspace&          workspace,
-	const std::vector<Point>& positions,
-	Index                     vertex,
-	std::vector<Index>&       ring)
+	const Workspace& workspace, const Surfaces& surfaces, Index vertex, std::vector<Index>& ring)
 {
 	Point normal = Point::Zero();
 	const IndexLists& around = workspace.vertex_faces;
 	for (const Index* it = around.begin(vertex); it != around.end(vertex); ++it)
-		normal +=
-			face_cross_product(positions, workspace.mesh.faces[static_cast<std::size_t>(*it)]);
+		normal += face_cross_product(
+			surfaces.smooth, workspace.mesh.faces[static_cast<std::size_t>(*it)]);
 	ring.assign(1, vertex);
 	append_neighbors(workspace, vertex, ring);
 	const std::size_t first_ring = ring.size();
@@ -70,11 +81,11 @@ double residual_variance(
 	const Point tangent = normal.unitOrthogonal();
 	const Point bitangent = normal.cross(tangent);
 
-	const Point& center = positions[static_cast<std::size_t>(vertex)];
+	const Point& center = surfaces.smooth[static_cast<std::size_t>(vertex)];
 	double extent = 0;
 	for (const Index i : ring)
 		extent =
-			std::max(extent, (positions[static_cast<std::size_t>(i)] - center).squaredNorm());
+			std::max(extent, (surfaces.smooth[static_cast<std::size_t>(i)] - center).squaredNorm());
 	if (!(extent > 0))
 		return -1;
 	const double scale = 1.0 / std::sqrt(extent);
@@ -82,10 +93,11 @@ double residual_variance(
 	Terms moments = Terms::Zero();
 	double energy = 0;
 	for (const Index i : ring) {
-		const Point offset = scale * (positions[static_cast<std::size_t>(i)] - center);
-		const double x = offset.dot(tangent);
-		const double y = offset.dot(bitangent);
-		const double height = offset.dot(normal);
+		const auto at = static_cast<std::size_t>(i);
+		const Point node = scale * (surfaces.smooth[at] - center);
+		const double x = node.dot(tangent);
+		const double y = node.dot(bitangent);
+		const double height = scale * (surfaces.noisy[at] - center).dot(normal);
 		Terms terms;
 		terms << 1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y;
 		gram.selfadjointView<Eigen::Lower>().rankUpdate(terms);
@@ -114,6 +126,9 @@ double estimate_noise_level(const Workspace& workspace, const std::vector<Point>
 				face_cross_product(positions, workspace.mesh.faces[static_cast<std::size_t>(*it)])
 					.norm();
 	}
+	std::vector<Point> smooth = positions;
+	taubin_smooth(workspace, SMOOTHING_PAIRS, smooth);
+	const Surfaces surfaces {positions, smooth};
 	const std::vector<Index> sample = sample_by_value(areas, SAMPLES);
 	std::vector<double> variances(sample.size());
 	std::vector<std::vector<Index>> rings(static_cast<std::size_t>(workspace.execution.threads()));
@@ -122,13 +137,14 @@ double estimate_noise_level(const Workspace& workspace, const std::vector<Point>
 			for (Index i = begin; i < end; ++i) {
 				const auto at = static_cast<std::size_t>(i);
 				variances[at] = residual_variance(
-					workspace, positions, sample[at], rings[static_cast<std::size_t>(worker)]);
+					workspace, surfaces, sample[at], rings[static_cast<std::size_t>(worker)]);
 			}
 		});
 	variances.erase(
 		std::remove_if(variances.begin(), variances.end(), [](double v) { return v < 0; }),
 		variances.end());
-	const double length = mean_edge_length(positions, workspace.mesh.faces);
+	// Noise lengthens the edges: those of the smoothed mesh are closer to the true ones.
+	const double length = mean_edge_length(smooth, workspace.mesh.faces);
 	return length > 0 ? std::sqrt(quantile(variances, QUANTILE)) / (QUANTILE_RATIO * length) : 0;
 }
 

@@ -20,12 +20,13 @@ std::size_t at(Index index)
 	return static_cast<std::size_t>(index);
 }
 
-// One umbrella step from `from` to `to`: the mean of the neighbours, each weighed by the faces shared.
+// One umbrella step from `from` to `to`: the mean of the neighbours, each weighed by the faces
+// shared.
 void umbrella_step(
-	const Workspace&                 workspace,
-	double                           step,
+	const Workspace& workspace,
+	double step,
 	const std::vector<std::uint8_t>& only,
-	std::vector<Point>&              positions)
+	std::vector<Point>& positions)
 {
 	std::vector<Point> moved(positions.size());
 	workspace.execution.parallel_for(
@@ -36,12 +37,20 @@ void umbrella_step(
 				if (count == 0 || workspace.mesh.is_fixed(i) || (!only.empty() && only[at(i)] == 0))
 					continue;
 				Point sum = Point::Zero();
+				Point normal = Point::Zero();
 				for (const Index* it = workspace.vertex_faces.begin(i);
 					 it != workspace.vertex_faces.end(i);
 					 ++it) {
-					for (const Index corner : workspace.mesh.faces[at(*it)])
+					const Face& face = workspace.mesh.faces[at(*it)];
+					for (const Index corner : face)
 						sum += positions[at(corner)] - positions[at(i)];
+					if (workspace.boundary[at(i)] != 0)
+						normal += face_cross_product(positions, face);
 				}
+				// Neighbours on one side only would pull the outline inwards.
+				if (workspace.boundary[at(i)] != 0)
+					sum = normal.isZero(0) ? normal :
+											 Point(normal.dot(sum) / normal.squaredNorm() * normal);
 				moved[at(i)] += step / (2.0 * static_cast<double>(count)) * sum;
 			}
 		});
@@ -51,9 +60,9 @@ void umbrella_step(
 } // namespace
 
 void taubin_smooth(
-	const Workspace&                 workspace,
-	double                           pairs,
-	std::vector<Point>&              positions,
+	const Workspace& workspace,
+	double pairs,
+	std::vector<Point>& positions,
 	const std::vector<std::uint8_t>& only)
 {
 	for (double left = pairs; left > 0; left -= 1) {
@@ -63,8 +72,8 @@ void taubin_smooth(
 	}
 }
 
-std::vector<std::uint8_t> folded_vertices(
-	const Workspace& workspace, const std::vector<Point>& positions, double cosine)
+std::vector<std::uint8_t>
+folded_vertices(const Workspace& workspace, const std::vector<Point>& positions, double cosine)
 {
 	std::vector<std::uint8_t> flags(positions.size(), 0);
 	workspace.execution.parallel_for(
@@ -77,7 +86,8 @@ std::vector<std::uint8_t> folded_vertices(
 					mean += face_cross_product(positions, workspace.mesh.faces[at(*it)]);
 				const double length = mean.norm();
 				flags[at(i)] = std::any_of(first, last, [&](Index face) {
-					const Point cross = face_cross_product(positions, workspace.mesh.faces[at(face)]);
+					const Point cross =
+						face_cross_product(positions, workspace.mesh.faces[at(face)]);
 					return cross.dot(mean) < cosine * cross.norm() * length;
 				});
 			}

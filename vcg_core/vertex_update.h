@@ -14,6 +14,10 @@ struct VertexUpdateOptions {
 	/// Weight each face around a vertex by its area (at the start of each step) instead of equally
 	/// as eq. 12 is printed. Off in the paper's method.
 	bool area_weights = false;
+	/// A vertex with a face whose normal is turned away from its target by more than this cosine
+	/// also moves across the targets, halfway to the mean of the centroids around it: eq. 12 by
+	/// itself never turns a folded face back. -1 never does so. Off in the paper's method.
+	double unfold_cosine = -1;
 };
 
 /// Moves vertices towards the planes through the face centroids with the given normals (eq. 12).

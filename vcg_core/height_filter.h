@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "workspace.h"
+
+#include <vector>
+
+namespace orthopoly {
+
+/// What `normals_from_heights` reads.
+struct HeightField {
+	/// #F unit guide directions V_i, already filtered. Zero: the face is left out.
+	std::vector<Point> guides;
+	/// #F centroids, where the normals are wanted.
+	std::vector<Point> nodes;
+	/// #V positions as measured, with all their noise.
+	std::vector<Point> positions;
+};
+
+/// Options of `normals_from_heights`.
+struct HeightFilterOptions {
+	/// Faces are similar where the cosine of their guide directions is above this.
+	double cos_threshold = 0.9;
+	/// A structure reaches over this many rings of faces to that many; each face takes the number
+	/// with the least risk.
+	int smallest_ring = 1;
+	int largest_ring = 5;
+	/// Standard deviation of the noise of the positions along the normal, the caller's length unit.
+	double sigma = 0;
+	/// A coefficient beyond the plane is kept where its energy exceeds this many noise variances.
+	double selection = 9;
+};
+
+/// Estimates face normals from the measured vertices themselves: discrete orthogonal polynomials of
+/// degree three for the height above the guide's tangent plane, over the vertices of the similar
+/// faces.
+///
+/// The noise of the heights is white and its variance is known, which that of face normals (which
+/// share vertices) is not, so a plane through many vertices is steadier than the mean of many
+/// normals. But it knows edges only through the guides. Structure size, selection and votes as in
+/// `filter_normals`.
+///
+/// @returns #F unit normals; a face without votes keeps its guide. The same bits on any number of
+/// threads. O(#F R^2). Throws Cancelled.
+std::vector<Point> normals_from_heights(
+	const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options);
+
+} // namespace orthopoly

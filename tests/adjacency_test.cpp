@@ -7,6 +7,7 @@
 #include "test_support.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <set>
 #include <vector>
 
@@ -79,6 +80,14 @@ TEST_CASE("the boundary of an open mesh", "[adjacency]")
 	const std::vector<Face> grid = {
 		{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {3, 4, 7}, {3, 7, 6}, {4, 5, 8}, {4, 8, 7}};
 	CHECK(boundary_vertices(9, grid) == std::vector<std::uint8_t> {1, 1, 1, 1, 0, 1, 1, 1, 1});
+}
+
+TEST_CASE("an edge of three faces is as little an inner one as an edge of one", "[adjacency]")
+{
+	const TriangleMesh mesh = make_non_manifold_edge();
+	const std::vector<std::uint8_t> flags = boundary_vertices(mesh.vertex_count(), mesh.faces);
+	// Seven vertices along the foot of the fin, seven along its top.
+	CHECK(std::count(flags.begin(), flags.end(), 1) == 14);
 }
 
 TEST_CASE("non-manifold edges are counted", "[adjacency]")

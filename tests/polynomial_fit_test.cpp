@@ -156,7 +156,8 @@ TEST_CASE("What was fitted before does not matter", "[polynomial_fit]")
 
 TEST_CASE("Every row of every fit is a vote", "[filter_normals]")
 {
-	const StepFixture f(noisy(make_torus(3000), 0.2, NoiseDirection::Random));
+	// Large enough for the votes to be gathered in several parts.
+	const StepFixture f(noisy(make_torus(10000), 0.2, NoiseDirection::Random));
 	const std::vector<Point>& normals = f.geometry.normals;
 	const std::vector<Point> guides = guide_directions(f.workspace, f.geometry, {});
 	NormalFilterOptions options;

@@ -11,8 +11,8 @@ namespace {
 // Faces a thread takes at a time when it fits; about half a millisecond of work.
 constexpr Index FIT_GRAIN = 32;
 
-// Votes are kept for so many fits at a time before their faces gather them: 40 faces and 32 bytes
-// each make some megabytes, however large the mesh.
+// Votes are kept for so many fits at a time before their faces gather them: about 70 of 32 bytes
+// each at the default rings, two megabytes in all however large the mesh.
 constexpr Index BLOCK = 1024;
 
 // Faces a thread takes at a time when the votes are gathered.

@@ -80,6 +80,25 @@ TEST_CASE("the closest point of a square, in front of it and beside it", "[close
 	CHECK((found.face == 0 || found.face == 1));
 }
 
+// In a mesh a neighbour covers up for an edge that a triangle forgets; alone it shows.
+TEST_CASE("the closest point of a single triangle, all around it", "[closest_point]")
+{
+	TriangleMesh mesh;
+	mesh.positions = {Point(0, 0, 0), Point(4, 0, 1), Point(1, 3, -1)};
+	mesh.faces = {{0, 1, 2}};
+	const ClosestPointIndex index(mesh);
+	for (int x = -4; x <= 8; ++x) {
+		for (int y = -4; y <= 7; ++y) {
+			for (const double z : {-2.0, 0.0, 0.5}) {
+				const Point query(x, y, z);
+				REQUIRE(
+					index.find(query).distance ==
+					Approx(distance_to_all(mesh, query)).margin(1e-14));
+			}
+		}
+	}
+}
+
 TEST_CASE("the index finds what a search through all faces finds", "[closest_point]")
 {
 	const double scale = GENERATE(1e-6, 1.0, 1e6);

@@ -3,6 +3,7 @@
 
 #include "defects.h"
 #include "errors.h"
+#include "mesh_ply.h"
 #include "mesh_text.h"
 #include "noise.h"
 #include "recipes.h"
@@ -184,6 +185,17 @@ TEST_CASE("PLY of both precisions and byte orders", "[mesh_io]")
 	for (std::size_t i = 0; i < mesh.positions.size(); ++i)
 		REQUIRE((single.positions[i] == mesh.positions[i].cast<float>().cast<double>()));
 	CHECK(single.faces == mesh.faces);
+}
+
+TEST_CASE("PLY coordinates of whole numbers keep their sign", "[mesh_io]")
+{
+	std::string content =
+		"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty char x\nproperty short y\n"
+		"property uchar z\nend_header\n";
+	content += std::string("\xfe\x00\x80\xff", 4);
+	const TriangleMesh mesh = parse_ply(content);
+	REQUIRE(mesh.vertex_count() == 1);
+	CHECK((mesh.positions[0] == Point(-2, -32768, 255)));
 }
 
 TEST_CASE("PLY as text, with comments, other properties and other elements", "[mesh_io]")

@@ -306,6 +306,17 @@ TEST_CASE("a kept boundary stays bit for bit, the rest moves", "[denoise]")
 	}
 	CHECK(moved > 0);
 	CHECK(kept.moved_vertices > mesh.vertex_count() / 2);
+
+	// Vertices that were fixed before stay so beside the boundary.
+	TriangleMesh fixed = mesh;
+	fixed.fixed.assign(mesh.positions.size(), 0);
+	const std::size_t inner =
+		static_cast<std::size_t>(std::find(boundary.begin(), boundary.end(), 0) - boundary.begin());
+	fixed.fixed[inner] = 1;
+	options.keep_boundary = true;
+	const DenoiseResult both = run(fixed, options);
+	CHECK(same_bits({both.positions[inner]}, {mesh.positions[inner]}));
+	CHECK(both.moved_vertices == kept.moved_vertices - 1);
 }
 
 TEST_CASE("the result is the same bit for bit on any number of threads", "[denoise][parallel]")

@@ -121,8 +121,10 @@ bool FilterOrthopolyPlugin::applyFilter(
 		std::ostringstream outputs;
 		outputs.imbue(std::locale::classic());
 		outputs.precision(9);
-		for (const auto& [name, value] : run.outputs)
-			std::visit([&](auto number) { outputs << ' ' << name << '=' << number; }, value);
+		for (const auto& [name, value] : run.outputs) {
+			outputs << ' ' << name << '=';
+			std::visit([&outputs](auto number) { outputs << number; }, value);
+		}
 		run.log("output values:" + outputs.str());
 		return true;
 	}

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """MeshLab's window on a display of its own, driven by keys and clicks as a person does it."""
 
+import gzip
 import os
 import shutil
 import signal
@@ -13,10 +14,13 @@ import numpy as np
 WIDTH, HEIGHT = 1600, 1200
 SCREENSHOTS = hosts.BUILD / "screenshots"
 
-# The root of a Debian release that has a MeshLab with the newer plugin interface, and what its package
-# forgets to depend on (without which the window starts with a box full of errors).
-SUITE, SUITE_VERSION = "trixie", "2022.02"
-FORGOTTEN = "libgomp1,libmuparser2v5,libmpfr6,libqhull-r8.0,lib3ds-1-3,libopenctm1,libxerces-c3.2t64"
+# Debian releases that have a MeshLab with the newer plugin interface, by its version; with what its
+# package forgets to depend on (without which the window starts with a box full of errors).
+FORGOTTEN = "libgomp1,libmuparser2v5,libqhull-r8.0,lib3ds-1-3,libopenctm1"
+SUITES = {
+    "2022.02": ("trixie", f"{FORGOTTEN},libmpfr6,libxerces-c3.2t64", []),
+    "2025.07": ("sid", FORGOTTEN, ['--aptopt=Acquire::Check-Valid-Until "false"']),
+}
 
 
 def need(*programs):
@@ -25,41 +29,46 @@ def need(*programs):
             raise hosts.Missing(f"GUI: {program} is not installed")
 
 
-def foreign_root():
-    """The release's MeshLab with all its libraries, unpacked once into the cache."""
-    root = hosts.CACHE / f"meshlab-{SUITE}"
+def foreign_root(version):
+    """A release's MeshLab with all its libraries, unpacked once into the cache."""
+    suite, forgotten, options = SUITES[version]
+    root = hosts.CACHE / f"meshlab-{suite}"
     if not (root / "usr/bin/meshlab").is_file():
         need("mmdebstrap")
         part = root.with_suffix(".part")
         shutil.rmtree(part, ignore_errors=True)
         part.parent.mkdir(parents=True, exist_ok=True)
         made = subprocess.run(
-            ["mmdebstrap", "--variant=extract", f"--include=meshlab,{FORGOTTEN}", SUITE, part],
+            ["mmdebstrap", *options, "--variant=extract", f"--include=meshlab,{forgotten}", suite, part],
             capture_output=True, text=True, timeout=900,
         )
         if made.returncode != 0 or not (part / "usr/bin/meshlab").is_file():
             shutil.rmtree(part, ignore_errors=True)
             raise hosts.Missing(
-                f"GUI {SUITE_VERSION}: mmdebstrap cannot get Debian {SUITE}: {made.stderr.strip()[-300:]}"
+                f"GUI {version}: mmdebstrap cannot get Debian {suite}: {made.stderr.strip()[-300:]}"
             )
         part.rename(root)
+    with gzip.open(root / "usr/share/doc/meshlab/changelog.Debian.gz", "rt") as changelog:
+        found = changelog.readline().split("(")[1]
+    if not found.startswith(version):
+        raise hosts.Missing(f"GUI {version}: Debian {suite} has MeshLab {found.split(')')[0]} now")
     return root
 
 
-def start_2020(folder, display, arguments):
+def start_2020(_, folder, display, arguments):
     binary = hosts.private_tree(folder / "tree") / "meshlab"
     return start([binary, *arguments], folder, display, {})
 
 
-def start_suite(folder, display, arguments):
-    plugin = hosts.plugin_for(f"meshlab-{SUITE_VERSION}")
-    root = foreign_root()
+def start_suite(version, folder, display, arguments):
+    plugin = hosts.plugin_for(f"meshlab-{version}")
+    root = foreign_root(version)
     libraries = next(root.glob("usr/lib/*/meshlab"))
     triplet = libraries.parent
     link = triplet / "plugins"
     if not link.is_symlink():
         link.symlink_to("meshlab/plugins")
-    own = folder / "home/.local/share/VCG/MeshLab_64bit_fp/MeshLabExtraPlugins" / SUITE_VERSION
+    own = folder / "home/.local/share/VCG/MeshLab_64bit_fp/MeshLabExtraPlugins" / version
     own.mkdir(parents=True)
     shutil.copy2(plugin, own)
     loader = next(triplet.glob("ld-linux*.so.*"))

@@ -30,12 +30,12 @@ class Layout:
 
 
 LAYOUTS = {
-    "2020.09": Layout(
-        "2020.09", gui.start_2020, (382, 133), (324, 164), (26, 442), (26, 84), (390, 23)
-    ),
-    gui.SUITE_VERSION: Layout(
-        gui.SUITE_VERSION, gui.start_suite, (362, 130), (300, 161), (191, 227), (17, 79), (354, 22)
-    ),
+    layout.version: layout
+    for layout in (
+        Layout("2020.09", gui.start_2020, (382, 133), (324, 164), (26, 442), (26, 84), (390, 23)),
+        Layout("2022.02", gui.start_suite, (362, 130), (300, 161), (191, 227), (17, 79), (354, 22)),
+        Layout("2025.07", gui.start_suite, (398, 130), (346, 161), (190, 315), (15, 169), (310, 22)),
+    )
 }
 
 # Entries of the menu Filters, counted from the first that can be chosen, and those of its submenus. One
@@ -71,7 +71,7 @@ def window(request, big_display, tmp_path):
         ply.write(tmp_path / "noisy.ply", shapes.with_noise(positions, 0.25 * 2 / 24), faces),
     ]
     try:
-        process = layout.start(tmp_path, big_display, meshes)
+        process = layout.start(layout.version, tmp_path, big_display, meshes)
     except hosts.Missing as reason:
         pytest.skip(str(reason))
     window = gui.Window(layout.version, process, tmp_path, big_display)

@@ -42,9 +42,9 @@ def in_meshlabserver(folder, filter_name, values, out):
 	if not result.ok:
 		sys.exit(f"meshlabserver failed:\n{result.log}")
 	shutil.copy(folder / f"{server.name}.ply", out)
-	# What the filter wrote to the log; its output values follow there, as name = value.
+	# What the filter wrote to the log, but for the output values that are for scripts.
 	lines = re.findall(r"^LOG: 2 (.*)$", result.log, re.MULTILINE)
-	return [line for line in lines if not re.match(r"\w+ = ", line)]
+	return [line for line in lines if not line.startswith("output values")]
 
 
 def in_pymeshlab(_, filter_name, values, out):

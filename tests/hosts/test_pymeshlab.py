@@ -224,7 +224,7 @@ CHANGES = {
         ("reference", 1, {"compare_with_reference": True}),
         ("max_angle", 90, {"compare_with_reference": True}),
         ("vertex_iterations", 25, {"method": "paper"}),
-        ("structure_ring", 2, {"method": "paper"}),
+        ("structure_ring", 5, {"method": "paper"}),
         ("cos_threshold", 0.9, {"method": "paper"}),
         ("cos_threshold_increment", 0.2, {"method": "paper"}),
         ("guide_ring", 3, {"method": "paper"}),

@@ -472,6 +472,20 @@ def coloured_by_error(path, title_, truth, limit):
 	return mesh
 
 
+def view_of(mesh):
+	"""From where most is seen of an open mesh; a closed one is the same from everywhere."""
+	import numpy as np
+
+	corners = mesh.vertices[mesh.faces]
+	cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+	x, y, z = cross.sum(axis=0) / max(np.linalg.norm(cross, axis=1).sum(), 1e-300)
+	length = np.sqrt(x * x + y * y + z * z)
+	if length < 0.2:
+		return -50.0, 25.0
+	# A little from the side: an edge seen straight on does not show.
+	return np.degrees(np.arctan2(x, -y)) - 20, np.degrees(np.arcsin(z / length)) * 0.8
+
+
 def draw(case, method, target, limit=30):
 	"""Ground truth, noisy, result, and the last two coloured by their error."""
 	import render
@@ -497,7 +511,7 @@ def draw(case, method, target, limit=30):
 		# What a file brought with it says nothing here.
 		for mesh in meshes[: 3 if case.truth else 2]:
 			mesh.colours = None
-		render.render(target, meshes, limit if case.truth else None)
+		render.render(target, meshes, limit if case.truth else None, view_of(meshes[0]))
 
 
 def picture_cases(cases, count):
@@ -573,6 +587,8 @@ def main():
 		notes.append(text)
 		print(text, flush=True)
 
+	if tools.load_note():
+		say(tools.load_note())
 	methods = tools.usable([name for name in arguments.methods.split(",") if name], say)
 	if not methods:
 		raise tools.BenchError("there is no method to run")

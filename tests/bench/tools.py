@@ -223,6 +223,14 @@ def processor():
 	return f"{name}, {os.cpu_count()} processors"
 
 
+def load_note():
+	"""A word where something else is keeping the processors busy; empty where nothing is."""
+	load = os.getloadavg()[0]
+	if load < 0.7:
+		return ""
+	return f"Other work was going on at the start (load average {load:.1f}): the seconds are too long."
+
+
 def commit():
 	try:
 		text = call("git", "-C", ROOT, "describe", "--always", "--dirty")

@@ -161,7 +161,6 @@ Plan plan_for(const DenoiseOptions& options, double noise)
 
 void record(const Plan& plan, DenoiseOptions& resolved)
 {
-	resolved.noise_level = plan.noise;
 	resolved.iterations = plan.iterations;
 	resolved.vertex_iterations = plan.vertex_iterations;
 	resolved.structure_ring = plan.rings.largest;

@@ -255,10 +255,10 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					Type::Integer,
 					"structure_ring",
 					"Structure ring R (-1: automatic)",
-					"Rings of faces searched for similar structures, 1 to 10 (the paper: 3). The "
-					"adaptive method tries smaller ones too and takes the best for each face. More "
-					"averages over a wider surrounding and takes longer (with the square of it); at "
-					"least the guide ring in the paper's method.")))),
+					"Rings of faces searched for similar structures, 1 to 10. The adaptive method "
+					"tries smaller ones too and takes the best for each face; in the paper's method it "
+					"may not be less than the guide ring, and automatic is one more. More averages "
+					"over a wider surrounding and takes longer (with the square of it).")))),
 		bind(
 			&Options::cos_threshold,
 			advanced(within(

@@ -41,7 +41,7 @@ struct Fixture {
 	TriangleMesh clean;
 	TriangleMesh mesh;
 	Progress progress;
-	Execution execution{1, progress};
+	Execution execution {1, progress};
 	std::unique_ptr<Workspace> workspace;
 	FaceGeometry geometry;
 	std::vector<Point> guides;
@@ -167,8 +167,7 @@ void whole_method(benchmark::State& state)
 
 } // namespace
 
-#define STEP(function) \
-	BENCHMARK(function)->Arg(16000)->Arg(128000)->Unit(benchmark::kMillisecond)
+#define STEP(function) BENCHMARK(function)->Arg(16000)->Arg(128000)->Unit(benchmark::kMillisecond)
 
 STEP(connectivity);
 STEP(normals);

@@ -194,7 +194,7 @@ TEST_CASE("only vertices with nothing but selected faces are free", "[vcg_adapte
 		const VcgArrays arrays = read_vcg_mesh(mesh, VcgRegion::SelectedFaces);
 		CHECK(arrays.selected_faces == 17);
 		CHECK(arrays.free_vertices == 13);
-		for (const Index vertex : arrays.mesh.faces[0])
+		for (const orthopoly::Index vertex : arrays.mesh.faces[0])
 			CHECK(arrays.mesh.is_fixed(vertex));
 	}
 }

@@ -78,7 +78,7 @@ DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& options, P
 	try {
 		Execution execution(options.threads, progress);
 		result.resolved.threads = execution.threads();
-		execution.begin_phase(0, 0.05, "reading the mesh");
+		execution.begin_phase(0, 0.01, "reading the mesh");
 		TriangleMesh prepared = mesh;
 		if (options.keep_boundary) {
 			prepared.fixed.resize(mesh.positions.size(), 0);
@@ -92,7 +92,10 @@ DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& options, P
 			throw InvalidMesh(
 				"none of the " + std::to_string(mesh.face_count()) +
 				" faces has an area, so there are no normals to filter; check the coordinates");
+		// A cancel is heard between any two of these steps, which are long on a large mesh.
+		execution.begin_phase(0.01, 0.03, "finding neighbours");
 		const Workspace workspace(prepared, execution);
+		execution.begin_phase(0.03, 0.05, "looking for defects");
 		result.non_manifold_edges = count_non_manifold_edges(mesh.faces);
 		result.folded_faces_before = count_folded_faces(mesh.positions, workspace);
 		for (const MethodEntry& entry : METHODS) {

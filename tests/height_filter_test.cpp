@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "height_filter.h"
+
+#include "shapes.h"
+#include "step_fixture.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace orthopoly;
+
+namespace {
+
+constexpr double DEGREE = 3.14159265358979323846 / 180;
+
+HeightFilterOptions options_of(double sigma, int smallest, int largest)
+{
+	HeightFilterOptions options;
+	options.sigma = sigma;
+	options.smallest_ring = smallest;
+	options.largest_ring = largest;
+	return options;
+}
+
+double degrees_between(const Point& a, const Point& b)
+{
+	return std::atan2(a.cross(b).norm(), a.dot(b)) / DEGREE;
+}
+
+template<class Expected>
+double mean_angle(const std::vector<Point>& normals, Expected expected)
+{
+	double sum = 0;
+	for (std::size_t i = 0; i < normals.size(); ++i)
+		sum += degrees_between(normals[i], expected(i));
+	return sum / static_cast<double>(normals.size());
+}
+
+// The height of a cubic surface over [0, 1]^2, gentle enough for one guide.
+double cubic(double x, double y)
+{
+	return 0.1 * x - 0.2 * y + 0.15 * x * x - 0.1 * x * y + 0.05 * y * y + 0.1 * x * x * x -
+		   0.12 * x * x * y + 0.07 * x * y * y - 0.06 * y * y * y;
+}
+
+Point cubic_normal(double x, double y)
+{
+	return Point(
+			   -(0.1 + 0.3 * x - 0.1 * y + 0.3 * x * x - 0.24 * x * y + 0.07 * y * y),
+			   -(-0.2 - 0.1 * x + 0.1 * y - 0.12 * x * x + 0.14 * x * y - 0.18 * y * y),
+			   1)
+		.normalized();
+}
+
+} // namespace
+
+TEST_CASE("Vertices on a plane give its normal, whatever the guides", "[height_filter]")
+{
+	const Eigen::Matrix3d rotation = some_rotation();
+	TriangleMesh mesh = noisy(make_flat_grid(15), 0.2, NoiseDirection::Isotropic);
+	for (Point& p : mesh.positions)
+		p = rotation * Point(p.x(), p.y(), 0);
+	const StepFixture f(mesh);
+	std::vector<Point> guides;
+	for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+		const double turn = double(i);
+		guides.push_back(
+			rotation * Point(0.1 * std::cos(turn), 0.1 * std::sin(turn), 1).normalized());
+	}
+	const double sigma = 0.01 * f.workspace.mean_edge_length;
+	const std::vector<Point> found = normals_from_heights(
+		f.workspace, {guides, f.geometry.centroids, mesh.positions}, options_of(sigma, 1, 4));
+	for (const Point& n : found)
+		CHECK((n - rotation * Point(0, 0, 1)).norm() < 1e-11);
+}
+
+TEST_CASE("A cubic surface comes back exactly", "[height_filter]")
+{
+	TriangleMesh mesh = noisy(make_flat_grid(15), 0.15, NoiseDirection::Isotropic);
+	for (Point& p : mesh.positions)
+		p.z() = cubic(p.x(), p.y());
+	const Eigen::Matrix3d rotation = some_rotation();
+	TriangleMesh turned = mesh;
+	turned.positions =
+		each(mesh.positions, [&](const Point& p) { return Point(1e-3 * (rotation * p)); });
+	const StepFixture f(turned);
+	const std::vector<Point> guides(mesh.faces.size(), rotation * Point(0, 0, 1));
+	// Without noise every coefficient counts.
+	const std::vector<Point> found = normals_from_heights(
+		f.workspace, {guides, f.geometry.centroids, turned.positions}, options_of(0, 4, 4));
+	const FaceGeometry geometry = face_geometry(mesh.positions, mesh.faces);
+	for (std::size_t i = 0; i < found.size(); ++i) {
+		const Point expected = cubic_normal(geometry.centroids[i].x(), geometry.centroids[i].y());
+		CHECK((found[i] - rotation * expected).norm() < 1e-9);
+	}
+}
+
+TEST_CASE("A wider structure sees through more noise", "[height_filter]")
+{
+	const StepFixture f(noisy(make_flat_grid(40), 0.3));
+	const double sigma = 0.3 * make_flat_grid(40).positions[1].x();
+	const std::vector<Point> guides(f.mesh.faces.size(), Point(0, 0, 1));
+	const auto up = [](std::size_t) { return Point(0, 0, 1); };
+	double before = mean_angle(f.geometry.normals, up);
+	for (const int ring : {1, 2, 3, 5}) {
+		const double now = mean_angle(
+			normals_from_heights(
+				f.workspace,
+				{guides, f.geometry.centroids, f.mesh.positions},
+				options_of(sigma, ring, ring)),
+			up);
+		CAPTURE(ring);
+		CHECK(now < 0.7 * before);
+		before = now;
+	}
+	CHECK(before < 1);
+}
+
+TEST_CASE("On a noisy sphere normals are radial", "[height_filter]")
+{
+	const TriangleMesh sphere = make_sphere(8000);
+	const FaceGeometry clean = face_geometry(sphere.positions, sphere.faces);
+	const StepFixture f(noisy(sphere, 0.2));
+	const double sigma = 0.2 * mean_edge_length(sphere.positions, sphere.faces);
+	const std::vector<Point> found = normals_from_heights(
+		f.workspace, {clean.normals, clean.centroids, f.mesh.positions}, options_of(sigma, 1, 5));
+	const auto radial = [&](std::size_t i) { return clean.centroids[i].normalized(); };
+	CHECK(mean_angle(f.geometry.normals, radial) > 15);
+	CHECK(mean_angle(found, radial) < 1.5);
+}
+
+TEST_CASE("Structures end at an edge the guides know", "[height_filter]")
+{
+	const TriangleMesh box = make_box({12, 12, 12}, Point(1, 1, 1));
+	const FaceGeometry clean = face_geometry(box.positions, box.faces);
+	const StepFixture exact(box);
+	const double edge = exact.workspace.mean_edge_length;
+	// Heights of the vertices on the edge count on both sides and are right on both.
+	for (const Point& n : {Point(1, 0, 0), Point(0, -1, 0), Point(0, 0, 1)}) {
+		const std::vector<Point> found = normals_from_heights(
+			exact.workspace,
+			{clean.normals, clean.centroids, box.positions},
+			options_of(0.1 * edge, 1, 5));
+		for (std::size_t i = 0; i < found.size(); ++i) {
+			if (clean.normals[i].dot(n) > 0.5)
+				CHECK((found[i] - n).norm() < 1e-12);
+		}
+	}
+	// What happens to vertices in the middle of the top is not felt on the sides.
+	const std::vector<Point> expected = normals_from_heights(
+		exact.workspace,
+		{clean.normals, clean.centroids, box.positions},
+		options_of(0.1 * edge, 1, 5));
+	std::vector<Point> bumpy = box.positions;
+	for (Point& p : bumpy) {
+		if (p.z() > 0.49 && std::abs(p.x()) < 0.49 && std::abs(p.y()) < 0.49)
+			p.z() += 0.3 * edge * std::sin(40 * p.x()) * std::cos(50 * p.y());
+	}
+	const std::vector<Point> found = normals_from_heights(
+		exact.workspace, {clean.normals, clean.centroids, bumpy}, options_of(0.1 * edge, 1, 5));
+	std::size_t changed = 0;
+	for (std::size_t i = 0; i < found.size(); ++i) {
+		const bool same = same_bits(found[i], expected[i]);
+		if (clean.normals[i].z() < 0.5)
+			CHECK(same);
+		else
+			changed += same ? 0U : 1U;
+	}
+	CHECK(changed > 200);
+}
+
+TEST_CASE("Heights of a face without a guide or without company", "[height_filter]")
+{
+	const StepFixture f(noisy(make_flat_grid(12), 0.1));
+	std::vector<Point> guides(f.mesh.faces.size(), Point(0, 0, 1));
+	guides[100] = Point::Zero();  // left out
+	guides[180] = Point(1, 0, 0); // similar to nobody: three vertices fix no plane
+	const std::vector<Point> found = normals_from_heights(
+		f.workspace,
+		{guides, f.geometry.centroids, f.mesh.positions},
+		options_of(0.1 * f.workspace.mean_edge_length, 1, 3));
+	CHECK(same_bits(found[100], guides[100]));
+	CHECK(same_bits(found[180], guides[180]));
+	for (std::size_t i = 0; i < found.size(); ++i) {
+		if (i != 100 && i != 180)
+			CHECK(found[i].norm() == Approx(1));
+	}
+}
+
+TEST_CASE("Strict selection drops curvature that is noise", "[height_filter]")
+{
+	const StepFixture f(noisy(make_flat_grid(40), 0.3));
+	const std::vector<Point> guides(f.mesh.faces.size(), Point(0, 0, 1));
+	const auto angle = [&](double selection) {
+		HeightFilterOptions options = options_of(0.3 / 40, 4, 4);
+		options.selection = selection;
+		return mean_angle(
+			normals_from_heights(
+				f.workspace, {guides, f.geometry.centroids, f.mesh.positions}, options),
+			[](std::size_t) { return Point(0, 0, 1); });
+	};
+	CHECK(angle(9) < 0.7 * angle(0));
+}
+
+TEST_CASE("Normals from heights turn and grow with the mesh", "[height_filter]")
+{
+	const TriangleMesh clean = make_part(4000);
+	const FaceGeometry guide = face_geometry(clean.positions, clean.faces);
+	const TriangleMesh mesh = noisy(clean, 0.15);
+	const StepFixture f(mesh);
+	const double sigma = 0.15 * f.workspace.mean_edge_length;
+	const std::vector<Point> expected = normals_from_heights(
+		f.workspace, {guide.normals, guide.centroids, mesh.positions}, options_of(sigma, 1, 5));
+	const Eigen::Matrix3d rotation = some_rotation();
+	for (const double scale : {1e-3, 1.0, 1e3}) {
+		const auto there = [&](const Point& p) { return Point(scale * (rotation * p)); };
+		const auto turn = [&](const Point& p) { return Point(rotation * p); };
+		TriangleMesh moved_mesh = mesh;
+		moved_mesh.positions = each(mesh.positions, there);
+		const StepFixture moved(moved_mesh);
+		const std::vector<Point> found = normals_from_heights(
+			moved.workspace,
+			{each(guide.normals, turn), each(guide.centroids, there), moved_mesh.positions},
+			options_of(scale * sigma, 1, 5));
+		// Guides that all agree to the last bit leave the axes to chance; the flat parts of this
+		// mesh have such, and there choices may differ.
+		std::size_t differing = 0;
+		for (std::size_t i = 0; i < found.size(); ++i)
+			differing += (found[i] - rotation * expected[i]).norm() > 1e-9 ? 1U : 0U;
+		CHECK(differing < found.size() / 2);
+		CHECK(
+			mean_angle(found, [&](std::size_t i) { return Point(rotation * expected[i]); }) < 0.1);
+	}
+}
+
+TEST_CASE("Normals from heights are the same on any number of threads", "[height_filter][parallel]")
+{
+	const TriangleMesh mesh = noisy(make_part(8000), 0.15);
+	const StepFixture one(mesh, 1);
+	const auto found = [&](const StepFixture& f) {
+		return normals_from_heights(
+			f.workspace,
+			{f.geometry.normals, f.geometry.centroids, mesh.positions},
+			options_of(0.15 * f.workspace.mean_edge_length, 1, 5));
+	};
+	const std::vector<Point> expected = found(one);
+	for (const int threads : {2, 4})
+		CHECK(same_bits(found(StepFixture(mesh, threads)), expected));
+}
+
+TEST_CASE("The height filter can be stopped", "[height_filter]")
+{
+	const TriangleMesh mesh = make_flat_grid(10);
+	Progress progress([](int, const std::string&) { return false; });
+	Execution execution(1, progress);
+	const Workspace workspace(mesh, execution);
+	const FaceGeometry geometry = face_geometry(mesh.positions, mesh.faces);
+	CHECK_THROWS_AS(
+		normals_from_heights(workspace, {geometry.normals, geometry.centroids, mesh.positions}, {}),
+		Cancelled);
+}

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "noise_level.h"
+
+#include "recipes.h"
+#include "shapes.h"
+#include "step_fixture.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <string>
+
+using namespace orthopoly;
+
+namespace {
+
+double estimated(const TriangleMesh& mesh, int threads = 1)
+{
+	const StepFixture f(mesh, threads);
+	return estimate_noise_level(f.workspace, mesh.positions);
+}
+
+// What the noise really is along the normal of the clean surface, in its mean edge lengths.
+double true_level(const TriangleMesh& clean, const TriangleMesh& mesh)
+{
+	std::vector<Point> normals(clean.positions.size(), Point::Zero());
+	for (const Face& face : clean.faces) {
+		for (const Index corner : face)
+			normals[static_cast<std::size_t>(corner)] += face_cross_product(clean.positions, face);
+	}
+	double sum = 0;
+	for (std::size_t i = 0; i < normals.size(); ++i)
+		sum += std::pow((mesh.positions[i] - clean.positions[i]).dot(normals[i].normalized()), 2);
+	return std::sqrt(sum / static_cast<double>(normals.size())) /
+		   mean_edge_length(clean.positions, clean.faces);
+}
+
+} // namespace
+
+TEST_CASE("The noise is estimated on every surface, of every kind and strength", "[noise_level]")
+{
+	const std::string name = GENERATE("cube", "sphere", "torus", "part", "height_field");
+	const auto direction =
+		GENERATE(NoiseDirection::Normal, NoiseDirection::Random, NoiseDirection::Isotropic);
+	const TriangleMesh clean = find_recipe(name).make_default();
+	for (const double sigma : {0.05, 0.1, 0.2, 0.3, 0.45, 0.6}) {
+		CAPTURE(name, static_cast<int>(direction), sigma);
+		const TriangleMesh mesh = noisy(clean, sigma, direction);
+		const double expected = true_level(clean, mesh);
+		CHECK(std::abs(estimated(mesh) - expected) < std::max(0.02, 0.15 * expected));
+	}
+}
+
+TEST_CASE("Clean meshes read as clean", "[noise_level]")
+{
+	for (const std::string name :
+		 {"cube", "sphere", "torus", "part", "height_field", "thin_plate"}) {
+		const Recipe& recipe = find_recipe(name);
+		for (const double finer : {1.0, 4.0}) {
+			CAPTURE(name, finer);
+			const double faces = finer * static_cast<double>(recipe.default_faces);
+			CHECK(estimated(recipe.make(static_cast<Index>(faces))) < 0.025);
+		}
+	}
+	CHECK(estimated(make_flat_grid(20)) < 1e-12);
+}
+
+TEST_CASE("A mesh without neighbours enough reads as clean", "[noise_level]")
+{
+	CHECK(estimated(tetrahedron()) == 0);
+	CHECK(estimated(unit_square()) == 0);
+}
+
+TEST_CASE("The estimate does not depend on size, place or order", "[noise_level]")
+{
+	// More vertices than are sampled, so that the choice is put to the test as well.
+	TriangleMesh mesh = noisy(make_part(90000), 0.2);
+	REQUIRE(mesh.vertex_count() > 40000);
+	const double expected = estimated(mesh);
+	for (const double scale : {1e-3, 1e3}) {
+		const Eigen::Matrix3d rotation = some_rotation();
+		TriangleMesh there = mesh;
+		there.positions =
+			each(mesh.positions, [&](const Point& p) { return Point(scale * (rotation * p)); });
+		CHECK(estimated(there) == Approx(expected).epsilon(1e-9));
+	}
+	std::vector<std::size_t> order(mesh.faces.size());
+	std::iota(order.begin(), order.end(), std::size_t(0));
+	std::mt19937 generator(3);
+	std::shuffle(order.begin(), order.end(), generator);
+	TriangleMesh shuffled = mesh;
+	for (std::size_t i = 0; i < order.size(); ++i) {
+		const Face& face = mesh.faces[order[i]];
+		shuffled.faces[i] = {face[1], face[2], face[0]};
+	}
+	CHECK(estimated(shuffled) == Approx(expected).epsilon(1e-9));
+}
+
+TEST_CASE("A part of the surface with features does not raise the estimate", "[noise_level]")
+{
+	// A tenth of the squares carry sharp ripples as high as ten times the noise.
+	TriangleMesh mesh = make_flat_grid(60);
+	for (Point& p : mesh.positions) {
+		if (p.x() < 0.1)
+			p.z() += std::lround(60 * p.x()) % 2 == 0 ? 0.02 : -0.02;
+	}
+	const double with_features = estimated(noisy(mesh, 0.1));
+	CHECK(with_features == Approx(estimated(noisy(make_flat_grid(60), 0.1))).epsilon(0.15));
+}
+
+TEST_CASE("The estimate is the same on any number of threads", "[noise_level][parallel]")
+{
+	const TriangleMesh mesh = noisy(make_torus(20000), 0.2);
+	const double expected = estimated(mesh, 1);
+	for (const int threads : {2, 4})
+		CHECK(estimated(mesh, threads) == expected);
+}

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sampling.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <numeric>
+#include <random>
+#include <vector>
+
+using namespace orthopoly;
+
+namespace {
+
+// Areas of triangles, as it were: all different, over a range of ten to one.
+std::vector<double> areas(int count, std::uint32_t seed = 1)
+{
+	std::mt19937 generator(seed);
+	std::vector<double> values;
+	for (int i = 0; i < count; ++i)
+		values.push_back(0.1 + 0.9 * static_cast<double>(generator()) * 0x1p-32);
+	return values;
+}
+
+std::vector<double> sampled_values(const std::vector<double>& values, Index wanted)
+{
+	std::vector<double> chosen;
+	for (const Index i : sample_by_value(values, wanted))
+		chosen.push_back(values[static_cast<std::size_t>(i)]);
+	std::sort(chosen.begin(), chosen.end());
+	return chosen;
+}
+
+} // namespace
+
+TEST_CASE("All are taken where there are not many more than wanted", "[sampling]")
+{
+	for (const int count : {0, 1, 50, 100, 199}) {
+		const std::vector<Index> sample = sample_by_value(areas(count), 100);
+		REQUIRE(sample.size() == static_cast<std::size_t>(count));
+		for (std::size_t i = 0; i < sample.size(); ++i)
+			CHECK(sample[i] == static_cast<Index>(i));
+	}
+	CHECK(sample_by_value(areas(20), 0).empty());
+}
+
+TEST_CASE("About as many as wanted are taken, each once, in order", "[sampling]")
+{
+	for (const Index wanted : {500, 2000, 4000}) {
+		const std::vector<Index> sample = sample_by_value(areas(20000), wanted);
+		CHECK(sample.size() > 0.75 * wanted);
+		CHECK(sample.size() < 1.25 * wanted);
+		CHECK(
+			std::adjacent_find(sample.begin(), sample.end(), std::greater_equal<Index>()) ==
+			sample.end());
+		CHECK(sample.front() >= 0);
+		CHECK(sample.back() < 20000);
+	}
+}
+
+TEST_CASE("The sample is a fair one", "[sampling]")
+{
+	// A sample of large or of small triangles would give a quantile of large or small ones.
+	std::vector<double> values = areas(20000, 3);
+	std::vector<double> chosen = sampled_values(values, 2500);
+	for (const double share : {0.1, 0.35, 0.5, 0.9})
+		CHECK(quantile(chosen, share) == Approx(quantile(values, share)).margin(0.05));
+	// Nor does it come from one part of the mesh.
+	const std::vector<Index> sample = sample_by_value(areas(20000), 2500);
+	const auto first_half =
+		std::count_if(sample.begin(), sample.end(), [](Index i) { return i < 10000; });
+	CHECK(std::abs(double(first_half) / double(sample.size()) - 0.5) < 0.05);
+}
+
+TEST_CASE("The same items are taken whatever their order", "[sampling]")
+{
+	std::vector<double> values = areas(20000, 2);
+	const std::vector<double> expected = sampled_values(values, 2500);
+	std::mt19937 generator(9);
+	for (int i = 0; i < 5; ++i) {
+		std::shuffle(values.begin(), values.end(), generator);
+		CHECK(sampled_values(values, 2500) == expected);
+	}
+	std::reverse(values.begin(), values.end());
+	CHECK(sampled_values(values, 2500) == expected);
+}
+
+TEST_CASE("The unit of the values changes no item", "[sampling]")
+{
+	const std::vector<double> values = areas(20000, 4);
+	const std::vector<Index> expected = sample_by_value(values, 2500);
+	for (const double unit : {0x1p-20, 0x1p+20, 1e-6, 1e6}) {
+		CAPTURE(unit);
+		std::vector<double> scaled = values;
+		for (double& value : scaled)
+			value *= unit;
+		const std::vector<Index> sample = sample_by_value(scaled, 2500);
+		std::vector<Index> differing;
+		std::set_symmetric_difference(
+			sample.begin(),
+			sample.end(),
+			expected.begin(),
+			expected.end(),
+			std::back_inserter(differing));
+		// A digit turns over by rounding once in a thousand million values or so.
+		CHECK(differing.empty());
+	}
+}
+
+TEST_CASE("Values all alike are all taken", "[sampling]")
+{
+	// The faces of a cube's grid.
+	CHECK(sample_by_value(std::vector<double>(20000, 0.37), 2500).size() == 20000);
+	CHECK(sample_by_value(std::vector<double>(20000, 0.0), 2500).size() == 20000);
+}
+
+TEST_CASE("A quantile has that share of the values below it", "[sampling]")
+{
+	std::vector<double> values(101);
+	std::iota(values.begin(), values.end(), 0.0);
+	std::mt19937 generator(1);
+	for (const double share : {0.0, 0.3, 0.35, 0.5, 0.99, 1.0}) {
+		std::shuffle(values.begin(), values.end(), generator);
+		CHECK(quantile(values, share) == Approx(100 * share).margin(1));
+	}
+	std::vector<double> none;
+	CHECK(quantile(none, 0.5) == 0);
+	std::vector<double> one = {3.5};
+	CHECK(quantile(one, 0.3) == 3.5);
+	// Outliers above do not move a low one.
+	std::fill(values.begin() + 50, values.end(), 0.0);
+	std::iota(values.begin(), values.end(), 0.0);
+	const double before = quantile(values, 0.3);
+	std::sort(values.begin(), values.end());
+	std::for_each(values.begin() + 60, values.end(), [](double& v) { v *= 1e9; });
+	CHECK(quantile(values, 0.3) == before);
+}

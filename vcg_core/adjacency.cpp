@@ -83,29 +83,6 @@ IndexLists vertex_faces(Index vertex_count, const std::vector<Face>& faces)
 	return lists;
 }
 
-IndexLists face_neighbors(const std::vector<Face>& faces, const IndexLists& vertex_faces)
-{
-	IndexLists lists;
-	lists.offsets.reserve(faces.size() + 1);
-	lists.offsets.push_back(0);
-	// Two vertices of valence six share two faces: about twelve neighbours a face.
-	lists.values.reserve(12 * faces.size());
-	std::vector<Index> around;
-	for (std::size_t i = 0; i < faces.size(); ++i) {
-		around.clear();
-		for (const Index vertex : faces[i])
-			around.insert(around.end(), vertex_faces.begin(vertex), vertex_faces.end(vertex));
-		std::sort(around.begin(), around.end());
-		around.erase(std::unique(around.begin(), around.end()), around.end());
-		for (const Index face : around) {
-			if (face != static_cast<Index>(i))
-				lists.values.push_back(face);
-		}
-		lists.offsets.push_back(static_cast<Index>(lists.values.size()));
-	}
-	return lists;
-}
-
 std::vector<std::uint8_t> boundary_vertices(Index vertex_count, const std::vector<Face>& faces)
 {
 	std::vector<std::uint8_t> flags(at(vertex_count), 0);
@@ -126,20 +103,23 @@ Index count_non_manifold_edges(const std::vector<Face>& faces)
 	return count;
 }
 
-RingCollector::RingCollector(const IndexLists& neighbors) :
-		neighbors_(neighbors), stamps_(neighbors.offsets.size() - 1, 0)
+RingCollector::RingCollector(const std::vector<Face>& faces, const IndexLists& vertex_faces) :
+		mesh_faces_(faces), vertex_faces_(vertex_faces), face_stamps_(faces.size(), 0),
+		vertex_stamps_(vertex_faces.offsets.size() - 1, 0)
 {
 }
 
 void RingCollector::collect(Index face, int rings)
 {
 	if (++stamp_ == 0) {
-		std::fill(stamps_.begin(), stamps_.end(), 0U);
+		std::fill(face_stamps_.begin(), face_stamps_.end(), 0U);
+		std::fill(vertex_stamps_.begin(), vertex_stamps_.end(), 0U);
 		stamp_ = 1;
 	}
-	faces_.assign(1, face);
-	ends_.assign(1, 1);
-	stamps_[at(face)] = stamp_;
+	faces_.clear();
+	ends_.clear();
+	add(face);
+	ends_.push_back(faces_.size());
 	for (int ring = 0; ring < rings; ++ring)
 		grow();
 }
@@ -149,15 +129,24 @@ void RingCollector::grow()
 	const std::size_t begin = ends_.size() > 1 ? ends_[ends_.size() - 2] : 0;
 	const std::size_t end = ends_.back();
 	for (std::size_t i = begin; i < end; ++i) {
-		const Index face = faces_[i];
-		for (const Index* it = neighbors_.begin(face); it != neighbors_.end(face); ++it) {
-			if (stamps_[at(*it)] != stamp_) {
-				stamps_[at(*it)] = stamp_;
-				faces_.push_back(*it);
-			}
+		for (const Index vertex : mesh_faces_[at(faces_[i])]) {
+			if (vertex_stamps_[at(vertex)] == stamp_)
+				continue;
+			vertex_stamps_[at(vertex)] = stamp_;
+			const Index* const last = vertex_faces_.end(vertex);
+			for (const Index* it = vertex_faces_.begin(vertex); it != last; ++it)
+				add(*it);
 		}
 	}
 	ends_.push_back(faces_.size());
+}
+
+void RingCollector::add(Index face)
+{
+	if (face_stamps_[at(face)] == stamp_)
+		return;
+	face_stamps_[at(face)] = stamp_;
+	faces_.push_back(face);
 }
 
 } // namespace orthopoly

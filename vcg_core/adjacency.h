@@ -33,9 +33,6 @@ struct IndexLists {
 /// once. #V lists.
 IndexLists vertex_faces(Index vertex_count, const std::vector<Face>& faces);
 
-/// The faces that share at least one vertex with a face, itself left out, each once. #F lists.
-IndexLists face_neighbors(const std::vector<Face>& faces, const IndexLists& vertex_faces);
-
 /// #V flags: one where the vertex lies on an edge that does not belong to exactly two faces.
 std::vector<std::uint8_t> boundary_vertices(Index vertex_count, const std::vector<Face>& faces);
 
@@ -43,10 +40,13 @@ std::vector<std::uint8_t> boundary_vertices(Index vertex_count, const std::vecto
 Index count_non_manifold_edges(const std::vector<Face>& faces);
 
 /// Collects k-rings: breadth-first over faces that share a vertex; the face itself is ring 0 and
-/// belongs to its k-ring. Keeps scratch memory (4 bytes a face), so use one object per thread.
+/// belongs to its k-ring. Each vertex is visited once, so a ring takes time in proportion to its
+/// faces however many meet in a vertex. Keeps scratch memory (6 bytes a face), so use one object
+/// per thread.
 class RingCollector {
 public:
-	explicit RingCollector(const IndexLists& neighbors);
+	/// Both must outlive the collector.
+	RingCollector(const std::vector<Face>& faces, const IndexLists& vertex_faces);
 
 	/// Fills faces() with the k-ring of the face, nearest rings first.
 	void collect(Index face, int rings);
@@ -61,8 +61,13 @@ public:
 	std::size_t count_within(int ring) const { return ends_[static_cast<std::size_t>(ring)]; }
 
 private:
-	const IndexLists& neighbors_;
-	std::vector<std::uint32_t> stamps_;
+	void add(Index face);
+
+	const std::vector<Face>& mesh_faces_;
+	const IndexLists& vertex_faces_;
+	/// The collection a face or a vertex was last reached in.
+	std::vector<std::uint32_t> face_stamps_;
+	std::vector<std::uint32_t> vertex_stamps_;
 	std::uint32_t stamp_ = 0;
 	std::vector<Index> faces_;
 	std::vector<std::size_t> ends_;

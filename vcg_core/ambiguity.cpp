@@ -30,9 +30,7 @@ std::vector<LocalAmbiguity> measure_ambiguity(
 	const Workspace& workspace, const std::vector<Point>& normals, const std::vector<double>& areas)
 {
 	std::vector<LocalAmbiguity> result(normals.size());
-	std::vector<RingCollector> rings(
-		static_cast<std::size_t>(workspace.execution.threads()),
-		RingCollector(workspace.face_neighbors));
+	std::vector<RingCollector> rings = workspace.ring_collectors();
 	workspace.execution.parallel_for(
 		workspace.mesh.face_count(), GRAIN, [&](Index begin, Index end, int worker) {
 			RingCollector& ring = rings[static_cast<std::size_t>(worker)];

@@ -29,7 +29,7 @@ public:
 		const Workspace& workspace,
 		const FaceGeometry& geometry,
 		const GuideDirectionOptions& options) :
-			ring_(workspace.face_neighbors),
+			ring_(workspace.ring_collector()),
 			geometry_(geometry), rings_(options.ring),
 			angle_scale_(1.0 - std::cos(options.sigma_theta * PI / 180.0))
 	{

@@ -58,7 +58,7 @@ struct Structure {
 /// Scratch memory of a worker.
 struct Scratch {
 	explicit Scratch(const Workspace& workspace) :
-			rings(workspace.face_neighbors), stamps(workspace.mesh.positions.size(), -1)
+			rings(workspace.ring_collector()), stamps(workspace.mesh.positions.size(), -1)
 	{
 	}
 

@@ -43,25 +43,31 @@ Index count_duplicate_faces(const TriangleMesh& mesh)
 	return count_repeated(faces, std::less<>());
 }
 
-Index count_components(const IndexLists& neighbors)
+// Pieces that do not share a vertex.
+Index count_components(const std::vector<Face>& faces, const IndexLists& around)
 {
-	const std::size_t face_count = neighbors.offsets.size() - 1;
-	std::vector<bool> reached(face_count, false);
+	std::vector<bool> face_reached(faces.size(), false);
+	std::vector<bool> vertex_reached(around.offsets.size() - 1, false);
 	std::vector<Index> open;
 	Index count = 0;
-	for (std::size_t seed = 0; seed < face_count; ++seed) {
-		if (reached[seed])
+	for (std::size_t seed = 0; seed < faces.size(); ++seed) {
+		if (face_reached[seed])
 			continue;
 		++count;
-		reached[seed] = true;
+		face_reached[seed] = true;
 		open.push_back(static_cast<Index>(seed));
 		while (!open.empty()) {
-			const Index face = open.back();
+			const Face& face = faces[static_cast<std::size_t>(open.back())];
 			open.pop_back();
-			for (const Index* it = neighbors.begin(face); it != neighbors.end(face); ++it) {
-				if (!reached[static_cast<std::size_t>(*it)]) {
-					reached[static_cast<std::size_t>(*it)] = true;
-					open.push_back(*it);
+			for (const Index vertex : face) {
+				if (vertex_reached[static_cast<std::size_t>(vertex)])
+					continue;
+				vertex_reached[static_cast<std::size_t>(vertex)] = true;
+				for (const Index* it = around.begin(vertex); it != around.end(vertex); ++it) {
+					if (!face_reached[static_cast<std::size_t>(*it)]) {
+						face_reached[static_cast<std::size_t>(*it)] = true;
+						open.push_back(*it);
+					}
 				}
 			}
 		}
@@ -86,7 +92,7 @@ Inspection inspect(const TriangleMesh& mesh)
 	found.duplicate_vertices = count_duplicate_vertices(mesh);
 	found.duplicate_faces = count_duplicate_faces(mesh);
 	found.non_manifold_edges = count_non_manifold_edges(mesh.faces);
-	found.components = count_components(face_neighbors(mesh.faces, around));
+	found.components = count_components(mesh.faces, around);
 	return found;
 }
 

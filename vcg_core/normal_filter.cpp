@@ -57,7 +57,7 @@ struct Structure {
 
 /// Scratch memory of a worker.
 struct Scratch {
-	explicit Scratch(const IndexLists& neighbors) : rings(neighbors) {}
+	explicit Scratch(const Workspace& workspace) : rings(workspace.ring_collector()) {}
 
 	RingCollector rings;
 	/// Sums over the members within each number of rings.
@@ -72,9 +72,7 @@ public:
 			workspace_(workspace),
 			field_(field), options_(options),
 			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring)),
-			scratch_(
-				static_cast<std::size_t>(workspace.execution.threads()),
-				Scratch(workspace.face_neighbors)),
+			scratch_(static_cast<std::size_t>(workspace.execution.threads()), Scratch(workspace)),
 			structures_(at(workspace.mesh.face_count()))
 	{
 	}

@@ -44,8 +44,7 @@ IndexLists isotropic_structures(
 	const SimilarStructureOptions& options)
 {
 	const Index face_count = workspace.mesh.face_count();
-	std::vector<RingCollector> rings(
-		at(workspace.execution.threads()), RingCollector(workspace.face_neighbors));
+	std::vector<RingCollector> rings = workspace.ring_collectors();
 	const auto for_each_member = [&](auto visit) {
 		workspace.execution.parallel_for(
 			face_count, GRAIN, [&](Index begin, Index end, int worker) {
@@ -81,7 +80,7 @@ SimilarStructures::SimilarStructures(
 	const std::vector<Point>& guides,
 	const IndexLists& structures,
 	const SimilarStructureOptions& options) :
-		ring_(workspace.face_neighbors),
+		ring_(workspace.ring_collector()),
 		guides_(guides), structures_(structures), options_(options)
 {
 }

@@ -20,12 +20,18 @@ struct Workspace {
 	Execution& execution;
 	/// Faces around every vertex, #V lists.
 	IndexLists vertex_faces;
-	/// Faces that share a vertex with a face, #F lists.
-	IndexLists face_neighbors;
 	/// Vertices on edges that do not belong to exactly two faces, #V flags.
 	std::vector<std::uint8_t> boundary;
 	/// Mean edge length of the mesh as given.
 	double mean_edge_length;
+
+	/// A collector of rings of this mesh.
+	RingCollector ring_collector() const { return {mesh.faces, vertex_faces}; }
+	/// One for each worker of the execution.
+	std::vector<RingCollector> ring_collectors() const
+	{
+		return {static_cast<std::size_t>(execution.threads()), ring_collector()};
+	}
 };
 
 /// Faces that are folded over: their normal is more than 90 degrees away from the area-weighted

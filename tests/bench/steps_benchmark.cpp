@@ -70,7 +70,7 @@ void connectivity(benchmark::State& state)
 {
 	time(state, [](Fixture& f) {
 		const Workspace workspace(f.mesh, f.execution);
-		benchmark::DoNotOptimize(workspace.face_neighbors.values.data());
+		benchmark::DoNotOptimize(workspace.vertex_faces.values.data());
 	});
 }
 
@@ -84,7 +84,7 @@ void normals(benchmark::State& state)
 void two_rings(benchmark::State& state)
 {
 	time(state, [](Fixture& f) {
-		RingCollector rings(f.workspace->face_neighbors);
+		RingCollector rings = f.workspace->ring_collector();
 		std::size_t count = 0;
 		for (Index face = 0; face < f.mesh.face_count(); ++face) {
 			rings.collect(face, 2);

@@ -81,7 +81,8 @@ void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseR
 	if (options.method == Method::Adaptive)
 		run.log(
 			"noise along the surface normals: " + in_words(result.estimated_noise) +
-			" mean edge lengths" + (options.noise_level ? " (given)" : " (estimated)"));
+			" mean edge lengths (estimated)" +
+			(options.noise_level ? ", taken as " + in_words(*options.noise_level) : ""));
 	if (nothing_to_do)
 		run.log(
 			"there is no noise worth removing, so the mesh is left as it is; set noise_level to denoise "

@@ -293,8 +293,8 @@ void run_adaptive_method(
 {
 	workspace.execution.begin_phase(0.05, 0.1, "estimating the noise");
 	result.estimated_noise = estimate_noise_level(workspace, workspace.mesh.positions);
-	const double noise =
-		options.noise_level.value_or(result.estimated_noise) * strength_factor(options.strength);
+	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
+	const double noise = *result.resolved.noise_level * strength_factor(options.strength);
 	const Plan plan = plan_for(options, noise);
 	record(plan, result.resolved);
 	if (!plan.scanner && noise < LEAST_NOISE) {

@@ -160,7 +160,7 @@ TEST_CASE("Every row of every fit is a vote", "[filter_normals]")
 	const StepFixture f(noisy(make_torus(10000), 0.2, NoiseDirection::Random));
 	const std::vector<Point>& normals = f.geometry.normals;
 	const std::vector<Point> guides = guide_directions(f.workspace, f.geometry, {});
-	NormalFilterOptions options;
+	PolynomialFilterOptions options;
 	options.fit = {2, 1};
 	options.structures.cos_threshold = 0.8;
 	const std::vector<Point> found = filter_normals(f.workspace, normals, guides, options);
@@ -231,7 +231,7 @@ TEST_CASE(
 TEST_CASE("Normals are filtered the same on any number of threads", "[filter_normals][parallel]")
 {
 	const TriangleMesh mesh = noisy(make_torus(10000), 0.2);
-	NormalFilterOptions options;
+	PolynomialFilterOptions options;
 	options.fit = {2, 2};
 	std::vector<Point> expected;
 	for (const int threads : {1, 2, 4}) {

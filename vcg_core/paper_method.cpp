@@ -85,7 +85,7 @@ public:
 private:
 	const Workspace& workspace_;
 	GuideDirectionOptions guide_;
-	NormalFilterOptions filter_;
+	PolynomialFilterOptions filter_;
 	VertexUpdateOptions update_;
 };
 

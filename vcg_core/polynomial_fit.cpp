@@ -159,7 +159,7 @@ std::vector<Point> filter_normals(
 	const Workspace& workspace,
 	const std::vector<Point>& normals,
 	const std::vector<Point>& guides,
-	const NormalFilterOptions& options)
+	const PolynomialFilterOptions& options)
 {
 	Execution& execution = workspace.execution;
 	const Index face_count = workspace.mesh.face_count();

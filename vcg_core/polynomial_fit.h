@@ -66,7 +66,7 @@ private:
 };
 
 /// Options of `filter_normals`.
-struct NormalFilterOptions {
+struct PolynomialFilterOptions {
 	SimilarStructureOptions structures;
 	PolynomialFitOptions fit;
 };
@@ -83,6 +83,6 @@ std::vector<Point> filter_normals(
 	const Workspace& workspace,
 	const std::vector<Point>& normals,
 	const std::vector<Point>& guides,
-	const NormalFilterOptions& options);
+	const PolynomialFilterOptions& options);
 
 } // namespace orthopoly

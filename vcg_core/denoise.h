@@ -76,7 +76,8 @@ struct DenoiseResult {
 	std::vector<Point> positions;
 	/// The options with every automatic value filled in (only those the method uses).
 	DenoiseOptions resolved;
-	/// Adaptive: estimated noise along the normal, in mean edge lengths, also where a level was given.
+	/// Adaptive: estimated noise along the normal, in mean edge lengths, also where a level was
+	/// given.
 	double estimated_noise = 0;
 	int iterations_done = 0;
 	/// Faces without area, which are neither filtered nor vote.

@@ -305,7 +305,7 @@ TEST_CASE("The strength dial turns one way", "[adaptive_method]")
 	CHECK(normal < moved(Strength::Strong));
 }
 
-TEST_CASE("Scanner noise is for the scanner mode", "[adaptive_method]")
+TEST_CASE("Scanner noise is for the scanner mode", "[adaptive_method][slow]")
 {
 	for (const std::string name : {"sphere", "cube"}) {
 		CAPTURE(name);

@@ -36,12 +36,18 @@ constexpr double PREFILTER_PAIRS_PER_NOISE = 5;
 constexpr double UNFOLDING_PAIRS = 3;
 constexpr double FOLD_COSINE = 0.3;
 
+// Standard deviations of the noise that a vertex may move after the prefilter.
+constexpr double DRIFT_BOUND = 6;
+
 constexpr int ITERATIONS = 2;
 constexpr int VERTEX_ITERATIONS = 20;
 constexpr double THRESHOLD_INCREMENT = 0.05;
 
 // Energy over noise variance from which a coefficient is kept: three standard deviations.
 constexpr double SELECTION = 9;
+
+// The same for heights, where a structure has up to seven such coefficients; normals have five.
+constexpr double HEIGHT_SELECTION = 12;
 
 // Share of the prefiltered original in the data of an iteration, the rest being the current
 // normals: filtering the original again keeps detail that filtering the filtered would lose.
@@ -74,17 +80,17 @@ constexpr double SCANNER_SELECTION = 200;
 double cos_threshold_for(double noise)
 {
 	using Entry = std::array<double, 2>;
-	constexpr std::array<Entry, 4> table = {
+	constexpr std::array<Entry, 4> TABLE = {
 		Entry {0.05, 0.80}, Entry {0.11, 0.65}, Entry {0.19, 0.55}, Entry {0.30, 0.60}};
-	if (noise <= table.front()[0])
-		return table.front()[1];
-	for (std::size_t k = 1; k < table.size(); ++k) {
-		if (noise < table[k][0]) {
-			const double share = (noise - table[k - 1][0]) / (table[k][0] - table[k - 1][0]);
-			return table[k - 1][1] + share * (table[k][1] - table[k - 1][1]);
+	if (noise <= TABLE.front()[0])
+		return TABLE.front()[1];
+	for (std::size_t k = 1; k < TABLE.size(); ++k) {
+		if (noise < TABLE[k][0]) {
+			const double share = (noise - TABLE[k - 1][0]) / (TABLE[k][0] - TABLE[k - 1][0]);
+			return TABLE[k - 1][1] + share * (TABLE[k][1] - TABLE[k - 1][1]);
 		}
 	}
-	return table.back()[1];
+	return TABLE.back()[1];
 }
 
 // Rings a structure may reach: wider the more there is to average.
@@ -197,6 +203,9 @@ public:
 	std::vector<Point> run()
 	{
 		prefilter();
+		// The level is in edge lengths of the surface below the noise, which lengthens them.
+		sigma_ = plan_.noise * mean_edge_length(positions_, workspace_.mesh.faces);
+		const std::vector<Point> start = positions_;
 		const FaceGeometry original = face_geometry(positions_, workspace_.mesh.faces);
 		for (int iteration = 0; iteration < plan_.iterations; ++iteration) {
 			const FaceGeometry current = face_geometry(positions_, workspace_.mesh.faces);
@@ -209,6 +218,7 @@ public:
 			update.area_weights = true;
 			update.unfold_cosine = FOLD_COSINE;
 			update_vertices(workspace_, normals, update, positions_);
+			bound_drift(start);
 		}
 		return std::move(positions_);
 	}
@@ -223,6 +233,21 @@ private:
 			0.15 + share * (iteration + to),
 			"iteration " + std::to_string(iteration + 1) + " of " +
 				std::to_string(plan_.iterations) + ": " + words);
+	}
+
+	// Eq. 12 lets vertices slide where the normals around them do not agree; noise does not reach
+	// further than this. Measured from the prefiltered positions, so that outliers do come back.
+	void bound_drift(const std::vector<Point>& start)
+	{
+		if (plan_.scanner)
+			return;
+		const double bound = DRIFT_BOUND * sigma_;
+		for (std::size_t i = 0; i < positions_.size(); ++i) {
+			const Point drift = positions_[i] - start[i];
+			const double length = drift.norm();
+			if (length > bound)
+				positions_[i] = start[i] + bound / length * drift;
+		}
 	}
 
 	void prefilter()
@@ -260,7 +285,7 @@ private:
 		HeightFilterOptions options;
 		options.largest_ring = plan_.height_rings;
 		options.sigma = sigma_;
-		options.selection = plan_.selection;
+		options.selection = HEIGHT_SELECTION;
 		const std::vector<Point> refined = normals_from_heights(
 			workspace_, {normals, current.centroids, workspace_.mesh.positions}, options);
 		const std::vector<LocalAmbiguity> ambiguities =
@@ -282,7 +307,7 @@ private:
 	const Workspace& workspace_;
 	const Plan& plan_;
 	/// Noise in the caller's length unit.
-	double sigma_;
+	double sigma_ = 0;
 	std::vector<Point> positions_;
 };
 

@@ -30,6 +30,9 @@ constexpr std::uint32_t PLANE_BITS = 7;
 // a slope: a height left unexplained may well be a slope at the centre, hence more than one.
 constexpr double BIAS_SHARE = 8;
 
+// What the noise may be above its estimate before the residual counts as unexplained.
+constexpr double MARGIN = 1.25;
+
 // Past this many times the least risk so far, growing further has not paid.
 constexpr double HOPELESS = 3;
 
@@ -210,7 +213,7 @@ private:
 	// Residual variance beyond what noise explains, as a slope over the radius of the structure.
 	double excess(const Moments& moments, double residual_variance) const
 	{
-		const double slack = 1 + std::sqrt(2.0 / moments.count);
+		const double slack = MARGIN + std::sqrt(2.0 / moments.count);
 		// Sums of x^2 and y^2 on the diagonal of the Gram matrix.
 		const double mean_square_radius = (moments.gram[2] + moments.gram[5]) / moments.count;
 		return std::max(0.0, residual_variance - slack * variance_) / mean_square_radius;

@@ -21,6 +21,9 @@ using Moments = Fit::Moments;
 // One structure in so many gives the noise floor.
 constexpr Index SAMPLE_EVERY = 8;
 
+// But so many at least, or a small mesh would have no steady floor.
+constexpr Index LEAST_SAMPLE = 1000;
+
 // The floor is read low among the residual variances: features only ever add to them.
 constexpr double FLOOR_QUANTILE = 0.3;
 
@@ -161,8 +164,8 @@ private:
 	// The noise variance of the data, as structures of each size see it.
 	void measure_noise_floors()
 	{
-		const std::vector<Index> sample =
-			sample_by_value(field_.weights, workspace_.mesh.face_count() / SAMPLE_EVERY);
+		const std::vector<Index> sample = sample_by_value(
+			field_.weights, std::max(LEAST_SAMPLE, workspace_.mesh.face_count() / SAMPLE_EVERY));
 		using Variances = std::array<double, NormalFilterOptions::MAX_RINGS + 1>;
 		std::vector<Variances> variances(sample.size());
 		workspace_.execution.parallel_for(

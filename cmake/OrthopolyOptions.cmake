@@ -18,7 +18,7 @@ endif()
 # Results are the same bit for bit wherever the program is built: no fused multiply-add behind the
 # source's back. There is no -march either: Eigen's alignment has to be that of the host's build.
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
-	add_compile_options(-ffp-contract=off)
+	add_compile_options(-ffp-contract=off -fno-math-errno -fno-trapping-math)
 endif()
 
 if(ORTHOPOLY_SANITIZE)

@@ -171,7 +171,8 @@ TEST_CASE("rings stop at the end of a component", "[adjacency]")
 	const IndexLists around = vertex_faces(mesh.vertex_count(), mesh.faces);
 	RingCollector rings(mesh.faces, around);
 	rings.collect(mesh.face_count() - 1, 4);
-	CHECK(rings.faces() == std::vector<Index> {mesh.face_count() - 1});
+	REQUIRE(rings.faces().size() == 1);
+	CHECK(rings.faces().front() == mesh.face_count() - 1);
 	CHECK(rings.count_within(4) == 1);
 	rings.collect(0, 50);
 	CHECK(static_cast<Index>(rings.faces().size()) == mesh.face_count() - 1);

@@ -57,6 +57,13 @@ void for_each_edge(const std::vector<Face>& faces, Visit visit)
 	}
 }
 
+// Makes room without giving any up.
+void reserve(std::vector<Index>& values, std::size_t size)
+{
+	if (values.size() < size)
+		values.resize(size + size / 2);
+}
+
 } // namespace
 
 IndexLists vertex_faces(Index vertex_count, const std::vector<Face>& faces)
@@ -104,9 +111,16 @@ Index count_non_manifold_edges(const std::vector<Face>& faces)
 }
 
 RingCollector::RingCollector(const std::vector<Face>& faces, const IndexLists& vertex_faces) :
-		mesh_faces_(faces), vertex_faces_(vertex_faces), face_stamps_(faces.size(), 0),
-		vertex_stamps_(vertex_faces.offsets.size() - 1, 0)
+		mesh_faces_(faces), vertex_faces_(vertex_faces)
 {
+	restart();
+}
+
+void RingCollector::restart()
+{
+	stamp_ = 0;
+	face_stamps_.assign(mesh_faces_.size(), 0);
+	vertex_stamps_.assign(vertex_faces_.offsets.empty() ? 0 : vertex_faces_.offsets.size() - 1, 0);
 }
 
 void RingCollector::collect(Index face, int rings)
@@ -116,10 +130,10 @@ void RingCollector::collect(Index face, int rings)
 		std::fill(vertex_stamps_.begin(), vertex_stamps_.end(), 0U);
 		stamp_ = 1;
 	}
-	faces_.clear();
-	ends_.clear();
-	add(face);
-	ends_.push_back(faces_.size());
+	face_stamps_[at(face)] = stamp_;
+	reserve(faces_, 1);
+	faces_[0] = face;
+	ends_.assign(1, 1);
 	for (int ring = 0; ring < rings; ++ring)
 		grow();
 }
@@ -128,25 +142,46 @@ void RingCollector::grow()
 {
 	const std::size_t begin = ends_.size() > 1 ? ends_[ends_.size() - 2] : 0;
 	const std::size_t end = ends_.back();
+	// Locals, since the compiler cannot know that what is written is not one of the members.
+	const std::uint32_t stamp = stamp_;
+	std::uint32_t* const vertex_stamps = vertex_stamps_.data();
+	std::uint32_t* const face_stamps = face_stamps_.data();
+	const Index* const offsets = vertex_faces_.offsets.data();
+	const Index* const values = vertex_faces_.values.data();
+	const Face* const mesh_faces = mesh_faces_.data();
+	// Whether a vertex or face is new is anybody's guess, so no branch depends on it: each is
+	// written down, and kept by counting it.
+	reserve(vertices_, 3 * (end - begin));
+	Index* const vertices = vertices_.data();
+	const Index* const faces = faces_.data();
+	std::size_t vertex_count = 0;
+	std::size_t mentions = 0;
 	for (std::size_t i = begin; i < end; ++i) {
-		for (const Index vertex : mesh_faces_[at(faces_[i])]) {
-			if (vertex_stamps_[at(vertex)] == stamp_)
-				continue;
-			vertex_stamps_[at(vertex)] = stamp_;
-			const Index* const last = vertex_faces_.end(vertex);
-			for (const Index* it = vertex_faces_.begin(vertex); it != last; ++it)
-				add(*it);
+		const Face& face = mesh_faces[at(faces[i])];
+		for (std::size_t k = 0; k < 3; ++k) {
+			const std::size_t vertex = at(face[k]);
+			const std::size_t is_new = vertex_stamps[vertex] != stamp ? 1 : 0;
+			vertex_stamps[vertex] = stamp;
+			vertices[vertex_count] = face[k];
+			vertex_count += is_new;
+			mentions += is_new * at(offsets[vertex + 1] - offsets[vertex]);
 		}
 	}
-	ends_.push_back(faces_.size());
-}
-
-void RingCollector::add(Index face)
-{
-	if (face_stamps_[at(face)] == stamp_)
-		return;
-	face_stamps_[at(face)] = stamp_;
-	faces_.push_back(face);
+	reserve(faces_, end + mentions + 1);
+	Index* const found = faces_.data();
+	std::size_t count = end;
+	for (std::size_t i = 0; i < vertex_count; ++i) {
+		const std::size_t vertex = at(vertices[i]);
+		const Index* const last = values + offsets[vertex + 1];
+		for (const Index* it = values + offsets[vertex]; it != last; ++it) {
+			const std::size_t face = at(*it);
+			const std::size_t is_new = face_stamps[face] != stamp ? 1 : 0;
+			face_stamps[face] = stamp;
+			found[count] = *it;
+			count += is_new;
+		}
+	}
+	ends_.push_back(count);
 }
 
 } // namespace orthopoly

@@ -3,10 +3,27 @@
 
 #include "triangle_mesh.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace orthopoly {
+
+/// Some consecutive indices of an array, which has to outlive it.
+class IndexSpan {
+public:
+	IndexSpan(const Index* begin, std::size_t size) : begin_(begin), size_(size) {}
+
+	const Index* begin() const { return begin_; }
+	const Index* end() const { return begin_ + size_; }
+	std::size_t size() const { return size_; }
+	Index front() const { return *begin_; }
+	Index operator[](std::size_t k) const { return begin_[k]; }
+
+private:
+	const Index* begin_;
+	std::size_t size_;
+};
 
 /// Lists of indices, one after the other in one array (compressed rows).
 struct IndexLists {
@@ -48,29 +65,34 @@ public:
 	/// Both must outlive the collector.
 	RingCollector(const std::vector<Face>& faces, const IndexLists& vertex_faces);
 
+	/// To be called after faces or vertex_faces have become others.
+	void restart();
+
 	/// Fills faces() with the k-ring of the face, nearest rings first.
 	void collect(Index face, int rings);
 
 	/// Adds one more ring to the one collected last.
 	void grow();
 
-	const std::vector<Index>& faces() const { return faces_; }
+	/// Until the next collect or grow.
+	IndexSpan faces() const { return {faces_.data(), ends_.empty() ? 0 : ends_.back()}; }
 	/// The outermost ring collected.
 	int rings() const { return static_cast<int>(ends_.size()) - 1; }
 	/// Number of faces within ring k (so k = 0 gives 1).
 	std::size_t count_within(int ring) const { return ends_[static_cast<std::size_t>(ring)]; }
 
 private:
-	void add(Index face);
-
 	const std::vector<Face>& mesh_faces_;
 	const IndexLists& vertex_faces_;
 	/// The collection a face or a vertex was last reached in.
 	std::vector<std::uint32_t> face_stamps_;
 	std::vector<std::uint32_t> vertex_stamps_;
 	std::uint32_t stamp_ = 0;
+	/// Larger than what it holds, which ends_ says, as is the next.
 	std::vector<Index> faces_;
 	std::vector<std::size_t> ends_;
+	/// First met in the ring collected last.
+	std::vector<Index> vertices_;
 };
 
 } // namespace orthopoly

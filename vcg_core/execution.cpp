@@ -62,10 +62,10 @@ void Execution::begin_phase(double begin, double end, std::string words)
 	poll(0);
 }
 
-void Execution::begin_part(int part, int parts)
+void Execution::begin_part(int part, int parts, int count)
 {
 	part_begin_ = static_cast<double>(part) / parts;
-	part_length_ = 1.0 / parts;
+	part_length_ = static_cast<double>(count) / parts;
 }
 
 void Execution::poll(double fraction_of_part)

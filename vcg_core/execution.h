@@ -37,8 +37,9 @@ public:
 	/// Reports at once; throws Cancelled.
 	void begin_phase(double begin, double end, std::string words);
 
-	/// Loops that follow are part `part` (from 0) of `parts` equal ones of the phase.
-	void begin_part(int part, int parts);
+	/// Loops that follow are part `part` (from 0) of `parts` equal ones of the phase, or so many of
+	/// them from there on.
+	void begin_part(int part, int parts, int count = 1);
 
 	/// Runs the body over [0, count) in parts of `grain` indices. Small loops run on the calling
 	/// thread. Throws Cancelled once the caller asked to stop, after all workers have halted; an

@@ -2,20 +2,22 @@
 #include "height_filter.h"
 
 #include "scattered_polynomials.h"
+#include "structure_votes.h"
 #include "tangent_frame.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <limits>
 
 namespace orthopoly {
 
 namespace {
 
-using Fit = ScatteredFit<3, 1>;
-using Moments = Fit::Moments;
+using Fit = ScatteredFit<3, 1, Lanes>;
 
 // Vertices from which a degree is fitted: half as many again as its terms.
 constexpr int VERTICES_FOR_CUBIC = 16;
@@ -24,7 +26,6 @@ constexpr int VERTICES_FOR_PLANE = 5;
 
 // The constant and the slopes are what is looked for; only what is beyond them is selected.
 constexpr std::size_t PLANE_TERMS = 3;
-constexpr std::uint32_t PLANE_BITS = 7;
 
 // Weight of the residual variance beyond the noise, over the mean square radius, in the variance of
 // a slope: a height left unexplained may well be a slope at the centre, hence more than one.
@@ -42,216 +43,326 @@ constexpr double LEAST_VARIANCE = 0.005;
 // Rings over which the change of the guides gives the axes.
 constexpr int RINGS_FOR_AXES = 2;
 
-constexpr Index GRAIN = 128;
+// Structures of so many sizes are fitted side by side.
+constexpr int RINGS_AT_ONCE = static_cast<int>(LANES);
 
 std::size_t at(Index index)
 {
 	return static_cast<std::size_t>(index);
 }
 
-/// The polynomial of one structure, ready to vote.
-struct Structure {
-	Point tangent;
-	Point bitangent;
-	Fit::Coefficients polynomial;
+/// Vertices side by side.
+struct VertexGroup {
+	Lanes x;
+	Lanes y;
+	Lanes height;
+	Lanes weight;
+};
+
+// From a center to four of some points.
+std::array<Lanes, 3> offsets(const std::vector<Point>& points, const Index* four, const Point& center)
+{
+	const Point& first = points[at(four[0])];
+	const Point& second = points[at(four[1])];
+	const Point& third = points[at(four[2])];
+	const Point& fourth = points[at(four[3])];
+	const auto component = [&](Index c) {
+		return Lanes({first[c], second[c], third[c], fourth[c]}) - Lanes(center[c]);
+	};
+	return {component(0), component(1), component(2)};
+}
+
+Lanes dot(const std::array<Lanes, 3>& vectors, const Point& direction)
+{
+	return vectors[0] * Lanes(direction[0]) + vectors[1] * Lanes(direction[1]) +
+		   vectors[2] * Lanes(direction[2]);
+}
+
+/// The polynomial that a structure votes with.
+struct Polynomial {
+	Fit::Coefficients coefficients;
 	double weight = 0;
+	/// 0: there is none.
 	int rings = 0;
 };
 
-/// Scratch memory of a worker.
-struct Scratch {
-	explicit Scratch(const Workspace& workspace) :
-			rings(workspace.ring_collector()), stamps(workspace.mesh.positions.size(), -1)
-	{
-	}
-
-	RingCollector rings;
-	/// The face each vertex was last gathered for.
-	std::vector<Index> stamps;
-};
-
-/// The filter's work, structure by structure and vote by vote.
-class Filter {
+/// Builds the structures of one patch after another, fits them and lets them vote.
+class Voter {
 public:
-	Filter(
+	Voter(
 		const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options) :
 			workspace_(workspace),
 			field_(field), options_(options),
 			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring)),
 			variance_(options.sigma * scale_ * options.sigma * scale_),
-			scratch_(static_cast<std::size_t>(workspace.execution.threads()), Scratch(workspace)),
-			structures_(at(workspace.mesh.face_count()))
+			rings_(patch_.faces(), patch_.vertex_faces()), member_ends_(at(options.largest_ring) + 1),
+			vertex_counts_(member_ends_.size()), vertex_group_ends_(member_ends_.size())
 	{
 	}
+	Voter(const Voter&) = delete;
+	Voter& operator=(const Voter&) = delete;
 
-	std::vector<Point> run()
+	const Patch& patch() const { return patch_; }
+
+	void enter(Index number)
 	{
-		workspace_.execution.begin_part(0, 2);
-		workspace_.execution.parallel_for(
-			workspace_.mesh.face_count(), GRAIN, [&](Index begin, Index end, int worker) {
-				for (Index i = begin; i < end; ++i)
-					fit_structure(i, scratch_[static_cast<std::size_t>(worker)]);
-			});
-		workspace_.execution.begin_part(1, 2);
-		std::vector<Point> result(structures_.size());
-		workspace_.execution.parallel_for(
-			workspace_.mesh.face_count(), GRAIN, [&](Index begin, Index end, int worker) {
-				for (Index j = begin; j < end; ++j)
-					result[at(j)] = votes_for(j, scratch_[static_cast<std::size_t>(worker)].rings);
-			});
-		return result;
+		patch_.build(workspace_, number, options_.largest_ring);
+		rings_.restart();
+		guides_.clear();
+		places_.clear();
+		for (const Index i : patch_.mesh_faces()) {
+			guides_.push_back(field_.guides[at(i)]);
+			places_.push_back(field_.nodes[at(i)]);
+		}
+		// Fills up groups of members.
+		guides_.push_back(Point::Zero());
+		places_.push_back(Point::Zero());
+		positions_.clear();
+		for (const Index i : patch_.mesh_vertices())
+			positions_.push_back(field_.positions[at(i)]);
+		// The same for groups of vertices.
+		positions_.push_back(Point::Zero());
+		stamps_.assign(positions_.size(), -1);
+	}
+
+	void vote(Index i, std::vector<Point>& sums)
+	{
+		if (guides_[at(i)].isZero(0))
+			return;
+		find_members(i);
+		choose_axes(i);
+		find_vertices(i);
+		lay_out(i);
+		const Polynomial best = fit();
+		if (best.rings > 0)
+			add_votes(i, best, sums);
 	}
 
 private:
-	bool is_similar(Index i, Index j) const
+	std::size_t members_within(int ring) const
 	{
-		return field_.guides[at(i)].dot(field_.guides[at(j)]) > options_.cos_threshold;
+		return member_ends_[at(ring)];
+	}
+
+	// The similar faces around a face.
+	void find_members(Index i)
+	{
+		rings_.collect(i, options_.largest_ring);
+		const Point guide = guides_[at(i)];
+		const IndexSpan faces = rings_.faces();
+		const Point* const guides = guides_.data();
+		members_.resize(faces.size() + LANES);
+		Index* const members = members_.data();
+		std::size_t end = 0;
+		std::size_t k = 0;
+		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
+			for (; k < rings_.count_within(ring); ++k) {
+				const Index j = faces[k];
+				members[end] = j;
+				end += static_cast<std::size_t>(
+					guide.dot(guides[j]) > options_.cos_threshold);
+			}
+			member_ends_[at(ring)] = end;
+		}
 	}
 
 	// Axes across the guide, turned to where the guides around it change most.
-	void choose_axes(Index i, RingCollector& rings, Structure& structure) const
+	void choose_axes(Index i)
 	{
-		TangentFrame frame(field_.guides[at(i)]);
-		rings.collect(i, RINGS_FOR_AXES);
-		for (const Index j : rings.faces()) {
-			if (is_similar(i, j))
-				frame.observe(field_.guides[at(j)], 1.0);
-		}
+		TangentFrame frame(guides_[at(i)]);
+		const std::size_t end = members_within(std::min(RINGS_FOR_AXES, options_.largest_ring));
+		for (std::size_t k = 0; k < end; ++k)
+			frame.observe(guides_[at(members_[k])], 1.0);
 		frame.align();
-		structure.tangent = frame.tangent();
-		structure.bitangent = frame.bitangent();
+		tangent_ = frame.tangent();
+		bitangent_ = frame.bitangent();
 	}
 
-	// Adds the vertices of the similar faces of one more ring.
-	void add_ring(Index i, const Structure& structure, Scratch& scratch, Moments& moments) const
+	// The vertices of the members, each ring filled up to whole groups.
+	void find_vertices(Index i)
 	{
-		const int ring = scratch.rings.rings();
-		const Point& guide = field_.guides[at(i)];
-		for (std::size_t k = ring == 0 ? 0 : scratch.rings.count_within(ring - 1);
-			 k < scratch.rings.count_within(ring);
-			 ++k) {
-			const Index j = scratch.rings.faces()[k];
-			if (!is_similar(i, j))
-				continue;
-			for (const Index vertex : workspace_.mesh.faces[at(j)]) {
-				if (scratch.stamps[at(vertex)] == i)
-					continue;
-				scratch.stamps[at(vertex)] = i;
-				const Point offset = scale_ * (field_.positions[at(vertex)] - field_.nodes[at(i)]);
-				moments.add(
-					offset.dot(structure.tangent),
-					offset.dot(structure.bitangent),
-					{offset.dot(guide)},
-					1.0);
+		vertices_.resize(3 * members_.size() + vertex_group_ends_.size() * LANES);
+		const auto nobody = static_cast<Index>(positions_.size()) - 1;
+		Index* const stamps = stamps_.data();
+		Index* const vertices = vertices_.data();
+		const Face* const faces = patch_.faces().data();
+		std::size_t end = 0;
+		std::size_t k = 0;
+		int count = 0;
+		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
+			const std::size_t begin = end;
+			for (; k < members_within(ring); ++k) {
+				for (const Index vertex : faces[members_[k]]) {
+					vertices[end] = vertex;
+					end += static_cast<std::size_t>(stamps[vertex] != i);
+					stamps[vertex] = i;
+				}
 			}
+			count += static_cast<int>(end - begin);
+			vertex_counts_[at(ring)] = count;
+			while (end % LANES != 0)
+				vertices_[end++] = nobody;
+			vertex_group_ends_[at(ring)] = end / LANES;
+		}
+		vertices_.resize(end);
+	}
+
+	void lay_out(Index i)
+	{
+		const Point center = places_[at(i)];
+		const Point tangent = scale_ * tangent_;
+		const Point bitangent = scale_ * bitangent_;
+		const Point guide = scale_ * guides_[at(i)];
+		const auto nobody = static_cast<Index>(positions_.size()) - 1;
+		groups_.resize(vertices_.size() / LANES);
+		for (std::size_t k = 0; k < groups_.size(); ++k) {
+			const Index* const vertices = vertices_.data() + LANES * k;
+			const std::array<Lanes, 3> offset = offsets(positions_, vertices, center);
+			VertexGroup& group = groups_[k];
+			group.x = dot(offset, tangent);
+			group.y = dot(offset, bitangent);
+			group.height = dot(offset, guide);
+			const auto weight = [&](std::size_t lane) { return vertices[lane] == nobody ? 0.0 : 1.0; };
+			group.weight = Lanes({weight(0), weight(1), weight(2), weight(3)});
 		}
 	}
 
-	void fit_structure(Index i, Scratch& scratch)
+	Polynomial fit()
 	{
-		const Point& guide = field_.guides[at(i)];
-		if (guide.isZero(0))
-			return;
-		Structure& structure = structures_[at(i)];
-		choose_axes(i, scratch.rings, structure);
-		Moments moments;
-		scratch.rings.collect(i, 0);
-		add_ring(i, structure, scratch, moments);
+		Polynomial best;
 		double least_risk = std::numeric_limits<double>::infinity();
-		for (int ring = 1; ring <= options_.largest_ring; ++ring) {
-			scratch.rings.grow();
-			add_ring(i, structure, scratch, moments);
-			if (ring < options_.smallest_ring || moments.count < VERTICES_FOR_PLANE)
-				continue;
-			const int degree = moments.count >= VERTICES_FOR_CUBIC     ? 3 :
-							   moments.count >= VERTICES_FOR_QUADRATIC ? 2 :
-																		 1;
-			const Fit fitted(moments, degree);
-			if (fitted.terms() < PLANE_TERMS)
-				continue;
-			std::uint32_t kept = PLANE_BITS;
-			double residual = fitted.residual();
-			int free = moments.count - static_cast<int>(PLANE_TERMS);
-			for (std::size_t term = PLANE_TERMS; term < fitted.terms(); ++term) {
-				if (fitted.energy(term) > options_.selection * variance_) {
-					kept |= 1U << term;
-					--free;
+		Fit::Moments sums;
+		std::size_t group = 0;
+		for (int ring = options_.smallest_ring; ring <= options_.largest_ring;
+			 ring += RINGS_AT_ONCE) {
+			const int end = std::min(ring + RINGS_AT_ONCE, options_.largest_ring + 1);
+			std::array<ScatteredMoments<3, 1>, LANES> of_sizes;
+			for (int size = ring; size < end; ++size) {
+				for (; group < vertex_group_ends_[at(size)]; ++group) {
+					const VertexGroup& vertices = groups_[group];
+					sums.add(vertices.x, vertices.y, {vertices.height}, vertices.weight);
 				}
-				else {
-					residual += fitted.energy(term);
-				}
+				add_up(sums, vertex_counts_[at(size)], of_sizes[at(size - ring)]);
 			}
-			const double risk =
-				slope_variance(fitted, kept) +
-				BIAS_SHARE * excess(moments, free > 0 ? residual / free : variance_);
-			if (risk < least_risk) {
-				least_risk = risk;
-				structure.polynomial = fitted.polynomial(kept);
-				structure.weight = 1 / (risk + LEAST_VARIANCE);
-				structure.rings = ring;
-			}
-			else if (risk > HOPELESS * least_risk) {
-				break;
+			const Fit fitted(side_by_side(of_sizes));
+			const Slopes slopes(fitted);
+			for (int size = ring; size < end; ++size) {
+				const double risk =
+					judge(of_sizes[at(size - ring)], fitted, slopes, at(size - ring), size, least_risk, best);
+				if (risk > HOPELESS * least_risk)
+					return best;
+				least_risk = std::min(risk, least_risk);
 			}
 		}
+		return best;
 	}
 
-	// Variance of the slope at the centre that the noise of the heights causes.
-	double slope_variance(const Fit& fitted, std::uint32_t kept) const
-	{
-		// Derivatives of the monomials at the centre along both axes.
-		const Fit::Terms along_x = fitted.orthonormal({0, 1, 0});
-		const Fit::Terms along_y = fitted.orthonormal({0, 0, 1});
-		double sum = 0;
-		for (std::size_t term = 0; term < fitted.terms(); ++term) {
-			if ((kept >> term & 1U) != 0)
-				sum += along_x[term] * along_x[term] + along_y[term] * along_y[term];
+	/// Slopes of the orthonormal polynomials at the centre, along both axes.
+	struct Slopes {
+		explicit Slopes(const Fit& fitted) :
+				along_x(fitted.orthonormal({0, 1, 0})), along_y(fitted.orthonormal({0, 0, 1}))
+		{
 		}
-		return variance_ * sum;
+		std::array<Lanes, Fit::TERMS> along_x;
+		std::array<Lanes, Fit::TERMS> along_y;
+	};
+
+	// The risk of a structure of that size, zero where there is none; takes over its polynomial
+	// where it is the least so far.
+	double judge(
+		const ScatteredMoments<3, 1>& moments,
+		const Fit& fitted,
+		const Slopes& slopes,
+		std::size_t lane,
+		int ring,
+		double least_risk,
+		Polynomial& best) const
+	{
+		const int count = static_cast<int>(moments.count);
+		const std::size_t degree = count >= VERTICES_FOR_CUBIC     ? 3 :
+						   count >= VERTICES_FOR_QUADRATIC ? 2 :
+															 1;
+		const std::size_t terms = fitted.terms(degree, lane);
+		if (count < VERTICES_FOR_PLANE || terms < PLANE_TERMS)
+			return least_risk;
+		double residual = fitted.residual(terms, lane);
+		std::uint32_t kept = 0;
+		int free = count;
+		// Variance of the slope at the centre that the noise of the heights causes.
+		double slope_variance = 0;
+		for (std::size_t term = 0; term < terms; ++term) {
+			if (term < PLANE_TERMS || fitted.energy(term, lane) > options_.selection * variance_) {
+				kept |= 1U << term;
+				--free;
+				const double x = slopes.along_x[term][lane];
+				const double y = slopes.along_y[term][lane];
+				slope_variance += variance_ * (x * x + y * y);
+			}
+			else {
+				residual += fitted.energy(term, lane);
+			}
+		}
+		const double risk =
+			slope_variance +
+			BIAS_SHARE * excess(moments, free > 0 ? residual / free : variance_);
+		if (risk < least_risk) {
+			best.coefficients = fitted.polynomial(kept, terms, lane);
+			best.weight = 1 / (risk + LEAST_VARIANCE);
+			best.rings = ring;
+		}
+		return risk;
 	}
 
 	// Residual variance beyond what noise explains, as a slope over the radius of the structure.
-	double excess(const Moments& moments, double residual_variance) const
+	double excess(const ScatteredMoments<3, 1>& moments, double residual_variance) const
 	{
 		const double slack = MARGIN + std::sqrt(2.0 / moments.count);
-		// Sums of x^2 and y^2 on the diagonal of the Gram matrix.
-		const double mean_square_radius = (moments.gram[2] + moments.gram[5]) / moments.count;
+		// Sums of x^2 and y^2.
+		const double mean_square_radius = (moments.powers[3] + moments.powers[5]) / moments.count;
 		return std::max(0.0, residual_variance - slack * variance_) / mean_square_radius;
 	}
 
-	Point votes_for(Index j, RingCollector& rings) const
+	void add_votes(Index i, const Polynomial& polynomial, std::vector<Point>& sums)
 	{
-		const Point& guide = field_.guides[at(j)];
-		if (guide.isZero(0))
-			return guide;
-		rings.collect(j, options_.largest_ring);
-		Point sum = Point::Zero();
-		std::size_t k = 0;
-		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
-			for (; k < rings.count_within(ring); ++k) {
-				const Index i = rings.faces()[k];
-				const Structure& structure = structures_[at(i)];
-				if (structure.rings < ring || structure.weight == 0 || !is_similar(i, j))
-					continue;
-				const Point offset = scale_ * (field_.nodes[at(j)] - field_.nodes[at(i)]);
-				sum += structure.weight * normal_of(structure, field_.guides[at(i)], offset);
-			}
+		const Point center = places_[at(i)];
+		const Point guide = guides_[at(i)];
+		const Point tangent = scale_ * tangent_;
+		const Point bitangent = scale_ * bitangent_;
+		std::array<Lanes, Fit::TERMS> c;
+		for (std::size_t term = 0; term < Fit::TERMS; ++term)
+			c[term] = Lanes(polynomial.coefficients[term][0]);
+		std::array<std::array<Lanes, 3>, 3> axes;
+		for (std::size_t axis = 0; axis < 3; ++axis) {
+			const Point& direction = axis == 0 ? guide : axis == 1 ? tangent_ : bitangent_;
+			for (int component = 0; component < 3; ++component)
+				axes[axis][at(component)] = Lanes(direction[component]);
 		}
-		const double length = sum.norm();
-		return length > 0 ? Point(sum / length) : guide;
-	}
-
-	// Unit normal of a structure's polynomial over a place.
-	static Point normal_of(const Structure& structure, const Point& guide, const Point& offset)
-	{
-		const double x = offset.dot(structure.tangent);
-		const double y = offset.dot(structure.bitangent);
-		const auto c = [&](std::size_t term) { return structure.polynomial[term][0]; };
-		const double along_x =
-			c(1) + 2 * c(3) * x + c(4) * y + 3 * c(6) * x * x + 2 * c(7) * x * y + c(8) * y * y;
-		const double along_y =
-			c(2) + c(4) * x + 2 * c(5) * y + c(7) * x * x + 2 * c(8) * x * y + 3 * c(9) * y * y;
-		return (guide - along_x * structure.tangent - along_y * structure.bitangent).normalized();
+		const Lanes two(2);
+		const Lanes three(3);
+		const std::size_t end = members_within(polynomial.rings);
+		// Whoever fills up the last group.
+		std::fill_n(
+			members_.begin() + static_cast<std::ptrdiff_t>(end),
+			LANES,
+			static_cast<Index>(guides_.size()) - 1);
+		for (std::size_t k = 0; k < end; k += LANES) {
+			const std::array<Lanes, 3> offset = offsets(places_, members_.data() + k, center);
+			const Lanes x = dot(offset, tangent);
+			const Lanes y = dot(offset, bitangent);
+			const Lanes slope_x =
+				c[1] + (two * c[3] + three * c[6] * x + two * c[7] * y) * x + (c[4] + c[8] * y) * y;
+			const Lanes slope_y =
+				c[2] + (c[4] + c[7] * x + two * c[8] * y) * x + (two * c[5] + three * c[9] * y) * y;
+			// The guide and the axes are unit vectors across each other.
+			const Lanes factor = Lanes(polynomial.weight) /
+								 square_root(Lanes(1) + slope_x * slope_x + slope_y * slope_y);
+			std::array<Lanes, 3> vote;
+			for (std::size_t component = 0; component < 3; ++component)
+				vote[component] = factor * (axes[0][component] - slope_x * axes[1][component] - slope_y * axes[2][component]);
+			for (std::size_t lane = 0; lane < LANES; ++lane)
+				sums[at(members_[k + lane])] +=
+					Point(vote[0][lane], vote[1][lane], vote[2][lane]);
+		}
 	}
 
 	const Workspace& workspace_;
@@ -260,8 +371,25 @@ private:
 	double scale_;
 	/// Of the noise, in scaled units.
 	double variance_;
-	std::vector<Scratch> scratch_;
-	std::vector<Structure> structures_;
+	Patch patch_;
+	RingCollector rings_;
+	std::vector<Point> guides_;
+	std::vector<Point> places_;
+	std::vector<Point> positions_;
+	/// The face each vertex was last gathered for.
+	std::vector<Index> stamps_;
+
+	// Of the structure at hand:
+	std::vector<Index> members_;
+	/// Members within each number of rings.
+	std::vector<std::size_t> member_ends_;
+	std::vector<Index> vertices_;
+	std::vector<VertexGroup> groups_;
+	/// Vertices of the members within each number of rings, and groups of them.
+	std::vector<int> vertex_counts_;
+	std::vector<std::size_t> vertex_group_ends_;
+	Point tangent_;
+	Point bitangent_;
 };
 
 } // namespace
@@ -269,7 +397,16 @@ private:
 std::vector<Point> normals_from_heights(
 	const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options)
 {
-	return Filter(workspace, field, options).run();
+	// A deque, since voters do not move.
+	std::deque<Voter> voters;
+	for (int worker = 0; worker < workspace.execution.threads(); ++worker)
+		voters.emplace_back(workspace, field, options);
+	std::vector<Point> result = sum_votes(workspace, voters);
+	for (std::size_t i = 0; i < result.size(); ++i) {
+		const double length = result[i].norm();
+		result[i] = length > 0 ? Point(result[i] / length) : field.guides[i];
+	}
+	return result;
 }
 
 } // namespace orthopoly

@@ -3,26 +3,28 @@
 
 #include "sampling.h"
 #include "scattered_polynomials.h"
+#include "structure_votes.h"
 #include "tangent_frame.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <limits>
 
 namespace orthopoly {
 
 namespace {
 
-using Fit = ScatteredFit<2, 3>;
-using Moments = Fit::Moments;
+using Fit = ScatteredFit<2, 3, Lanes>;
 
 // One structure in so many gives the noise floor.
 constexpr Index SAMPLE_EVERY = 8;
 
-// But so many at least, or a small mesh would have no steady floor.
+// But so many at least, or a small mesh would have no steady floor; and so many are always enough.
 constexpr Index LEAST_SAMPLE = 1000;
+constexpr Index LARGEST_SAMPLE = 20000;
 
 // The floor is read low among the residual variances: features only ever add to them.
 constexpr double FLOOR_QUANTILE = 0.3;
@@ -42,255 +44,367 @@ constexpr double HOPELESS = 3;
 // Bounds the weight of votes from structures without a residual: (4 degrees)^2.
 constexpr double LEAST_VARIANCE = 0.005;
 
-constexpr Index GRAIN = 128;
+// Structures of so many sizes are fitted side by side.
+constexpr int RINGS_AT_ONCE = static_cast<int>(LANES);
+
+constexpr std::size_t RINGS = NormalFilterOptions::MAX_RINGS + 1;
+
+/// Residual variances by number of rings; negative where there is none.
+using Variances = std::array<double, RINGS>;
 
 std::size_t at(Index index)
 {
 	return static_cast<std::size_t>(index);
 }
 
-/// The polynomial of one structure, ready to vote.
-struct Structure {
-	Point tangent;
-	Point bitangent;
-	Fit::Coefficients polynomial;
+/// The polynomial that a structure votes with.
+struct Polynomial {
+	Fit::Coefficients coefficients;
 	double weight = 0;
+	/// 0: there is none.
 	int rings = 0;
 };
 
-/// Scratch memory of a worker.
-struct Scratch {
-	explicit Scratch(const Workspace& workspace) : rings(workspace.ring_collector()) {}
-
-	RingCollector rings;
-	/// Sums over the members within each number of rings.
-	std::array<Moments, NormalFilterOptions::MAX_RINGS + 1> moments;
+/// The fields at a face.
+struct Observation {
+	Point guide = Point::Zero();
+	double weight = 0;
+	Point data = Point::Zero();
+	Point node = Point::Zero();
 };
 
-/// The filter's work, structure by structure and vote by vote.
-class Filter {
+/// Builds the structures of one patch after another.
+class Structures {
 public:
-	Filter(
+	Structures(
 		const Workspace& workspace, const NormalField& field, const NormalFilterOptions& options) :
 			workspace_(workspace),
 			field_(field), options_(options),
 			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring)),
-			scratch_(static_cast<std::size_t>(workspace.execution.threads()), Scratch(workspace)),
-			structures_(at(workspace.mesh.face_count()))
+			rings_(patch_.faces(), patch_.vertex_faces())
 	{
 	}
 
-	std::vector<Point> run()
+	Structures(const Structures&) = delete;
+	Structures& operator=(const Structures&) = delete;
+
+	const Patch& patch() const { return patch_; }
+
+	void enter(Index number)
 	{
-		workspace_.execution.begin_part(0, 4);
-		measure_noise_floors();
-		workspace_.execution.begin_part(1, 4);
-		workspace_.execution.parallel_for(
-			workspace_.mesh.face_count(), GRAIN, [&](Index begin, Index end, int worker) {
-				for (Index i = begin; i < end; ++i)
-					fit_structure(i, scratch_[static_cast<std::size_t>(worker)]);
-			});
-		workspace_.execution.begin_part(3, 4);
-		std::vector<Point> result(structures_.size());
-		workspace_.execution.parallel_for(
-			workspace_.mesh.face_count(), GRAIN, [&](Index begin, Index end, int worker) {
-				for (Index j = begin; j < end; ++j)
-					result[at(j)] = votes_for(j, scratch_[static_cast<std::size_t>(worker)].rings);
-			});
-		return result;
+		patch_.build(workspace_, number, options_.largest_ring);
+		rings_.restart();
+		observations_.clear();
+		for (const Index i : patch_.mesh_faces())
+			observations_.push_back(
+				{field_.guides[at(i)],
+				 field_.weights[at(i)],
+				 field_.data[at(i)],
+				 field_.nodes[at(i)]});
+		// Fills up groups of members.
+		observations_.emplace_back();
+	}
+
+	/// Calls visit(fit, lane, ring, members) for the structure of each size, smallest first, until
+	/// it returns false.
+	template<class Visit>
+	void for_each_size(Index i, Visit visit)
+	{
+		if (observations_[at(i)].guide.isZero(0))
+			return;
+		find_members(i);
+		choose_axes(i);
+		lay_out(i);
+		Fit::Moments sums;
+		std::size_t group = 0;
+		for (int ring = 0; ring < options_.smallest_ring; ++ring)
+			add_ring(ring, group, sums);
+		for (int ring = options_.smallest_ring; ring <= options_.largest_ring; ring += RINGS_AT_ONCE) {
+			const int end = std::min(ring + RINGS_AT_ONCE, options_.largest_ring + 1);
+			std::array<ScatteredMoments<2, 3>, LANES> of_sizes;
+			for (int size = ring; size < end; ++size) {
+				add_ring(size, group, sums);
+				add_up(sums, counts_[at(size)], of_sizes[at(size - ring)]);
+			}
+			const Fit fitted(side_by_side(of_sizes));
+			for (int size = ring; size < end; ++size) {
+				const int members = counts_[at(size)];
+				if (members > 0 && !visit(fitted, at(size - ring), size, members))
+					return;
+			}
+		}
+	}
+
+	/// Adds the votes of a polynomial for the members of the structure visited last.
+	void add_votes(const Polynomial& polynomial, std::vector<Point>& sums) const
+	{
+		std::array<std::array<Lanes, 3>, Fit::TERMS> coefficients;
+		for (std::size_t term = 0; term < Fit::TERMS; ++term) {
+			for (std::size_t c = 0; c < 3; ++c)
+				coefficients[term][c] = Lanes(polynomial.coefficients[term][c]);
+		}
+		const std::size_t end = group_ends_[at(polynomial.rings)];
+		for (std::size_t group = 0; group < end; ++group) {
+			const std::array<Lanes, Fit::TERMS> terms =
+				monomials<2>(groups_[group].x, groups_[group].y);
+			std::array<Lanes, 3> vote = coefficients[0];
+			for (std::size_t term = 1; term < Fit::TERMS; ++term) {
+				for (std::size_t c = 0; c < 3; ++c)
+					vote[c] += coefficients[term][c] * terms[term];
+			}
+			const Lanes squares = vote[0] * vote[0] + vote[1] * vote[1] + vote[2] * vote[2];
+			const Lanes factor = where_positive(
+				squares, Lanes(polynomial.weight) / square_root(squares), Lanes(0));
+			for (std::size_t c = 0; c < 3; ++c)
+				vote[c] *= factor;
+			for (std::size_t lane = 0; lane < LANES; ++lane)
+				sums[at(members_[LANES * group + lane])] +=
+					Point(vote[0][lane], vote[1][lane], vote[2][lane]);
+		}
 	}
 
 private:
-	bool takes_part(Index face) const { return !field_.guides[at(face)].isZero(0); }
+	/// Members side by side.
+	struct Group {
+		Lanes x;
+		Lanes y;
+		std::array<Lanes, 3> data;
+		Lanes weight;
+	};
 
-	// Whether face j belongs to the structure of face i.
-	bool is_member(Index i, Index j) const
+	// The members of a structure, each ring filled up to whole groups.
+	void find_members(Index i)
 	{
-		const Point& guide = field_.guides[at(i)];
-		return guide.dot(field_.guides[at(j)]) > options_.cos_threshold &&
-			   field_.weights[at(j)] > 0 && guide.dot(field_.data[at(j)]) > 0;
+		rings_.collect(i, options_.largest_ring);
+		const Observation* const observations = observations_.data();
+		const Point guide = observations[i].guide;
+		const auto nobody = static_cast<Index>(observations_.size()) - 1;
+		members_.resize(rings_.faces().size() + RINGS * LANES);
+		Index* const members = members_.data();
+		const IndexSpan faces = rings_.faces();
+		std::size_t end = 0;
+		std::size_t k = 0;
+		int count = 0;
+		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
+			const std::size_t begin = end;
+			for (; k < rings_.count_within(ring); ++k) {
+				const Index j = faces[k];
+				const Observation& other = observations[j];
+				// Bits and no branches: half of them would be guessed wrong.
+				const bool is_similar = guide.dot(other.guide) > options_.cos_threshold;
+				const bool has_weight = other.weight > 0;
+				const bool is_on_this_side = guide.dot(other.data) > 0;
+				members[end] = j;
+				end += static_cast<std::size_t>(is_similar & has_weight & is_on_this_side);
+			}
+			count += static_cast<int>(end - begin);
+			counts_[at(ring)] = count;
+			while (end % LANES != 0)
+				members_[end++] = nobody;
+			group_ends_[at(ring)] = end / LANES;
+		}
+		members_.resize(end);
 	}
 
 	// Axes across the guide, turned to where the data around it change most.
-	void choose_axes(Index i, const RingCollector& rings, Structure& structure) const
+	void choose_axes(Index i)
 	{
-		TangentFrame frame(field_.guides[at(i)]);
-		for (std::size_t k = 0; k < rings.count_within(options_.smallest_ring); ++k) {
-			const Index j = rings.faces()[k];
-			if (is_member(i, j))
-				frame.observe(field_.data[at(j)], field_.weights[at(j)]);
+		TangentFrame frame(observations_[at(i)].guide);
+		const std::size_t end =
+			LANES * group_ends_[at(options_.smallest_ring)];
+		for (std::size_t k = 0; k < end; ++k) {
+			const Observation& member = observations_[at(members_[k])];
+			frame.observe(member.data, member.weight);
 		}
 		frame.align();
-		structure.tangent = frame.tangent();
-		structure.bitangent = frame.bitangent();
+		tangent_ = scale_ * frame.tangent();
+		bitangent_ = scale_ * frame.bitangent();
 	}
 
-	void gather(Index i, Scratch& scratch, Structure& structure) const
+	void lay_out(Index i)
 	{
-		scratch.rings.collect(i, options_.largest_ring);
-		choose_axes(i, scratch.rings, structure);
-		Moments moments;
-		std::size_t k = 0;
-		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
-			for (; k < scratch.rings.count_within(ring); ++k) {
-				const Index j = scratch.rings.faces()[k];
-				if (!is_member(i, j))
-					continue;
-				const Point offset = scale_ * (field_.nodes[at(j)] - field_.nodes[at(i)]);
-				const Point& value = field_.data[at(j)];
-				moments.add(
-					offset.dot(structure.tangent),
-					offset.dot(structure.bitangent),
-					{value.x(), value.y(), value.z()},
-					field_.weights[at(j)]);
+		const Point center = observations_[at(i)].node;
+		groups_.resize(members_.size() / LANES);
+		for (std::size_t k = 0; k < groups_.size(); ++k) {
+			const Index* const members = members_.data() + LANES * k;
+			const Observation& first = observations_[at(members[0])];
+			const Observation& second = observations_[at(members[1])];
+			const Observation& third = observations_[at(members[2])];
+			const Observation& fourth = observations_[at(members[3])];
+			const auto lanes = [&](auto value_of) {
+				return Lanes({value_of(first), value_of(second), value_of(third), value_of(fourth)});
+			};
+			Group& group = groups_[k];
+			group.x = Lanes(0);
+			group.y = Lanes(0);
+			for (int c = 0; c < 3; ++c) {
+				const Lanes offset =
+					lanes([c](const Observation& o) { return o.node[c]; }) - Lanes(center[c]);
+				group.x += offset * Lanes(tangent_[c]);
+				group.y += offset * Lanes(bitangent_[c]);
+				group.data[at(c)] = lanes([c](const Observation& o) { return o.data[c]; });
 			}
-			scratch.moments[static_cast<std::size_t>(ring)] = moments;
+			group.weight = lanes([](const Observation& o) { return o.weight; });
 		}
 	}
 
-	static Fit fit(const Moments& moments)
+	void add_ring(int ring, std::size_t& group, Fit::Moments& sums) const
 	{
-		const int degree = moments.count >= MEMBERS_FOR_QUADRATIC ? 2 :
-						   moments.count >= MEMBERS_FOR_LINEAR    ? 1 :
-																	0;
-		return Fit(moments, degree);
-	}
-
-	static int free_members(const Moments& moments, std::size_t terms)
-	{
-		return moments.count - static_cast<int>(terms);
-	}
-
-	// The noise variance of the data, as structures of each size see it.
-	void measure_noise_floors()
-	{
-		const std::vector<Index> sample = sample_by_value(
-			field_.weights, std::max(LEAST_SAMPLE, workspace_.mesh.face_count() / SAMPLE_EVERY));
-		using Variances = std::array<double, NormalFilterOptions::MAX_RINGS + 1>;
-		std::vector<Variances> variances(sample.size());
-		workspace_.execution.parallel_for(
-			static_cast<Index>(sample.size()), GRAIN, [&](Index begin, Index end, int worker) {
-				Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
-				for (Index k = begin; k < end; ++k) {
-					variances[at(k)].fill(-1);
-					const Index i = sample[at(k)];
-					if (!takes_part(i))
-						continue;
-					Structure structure;
-					gather(i, scratch, structure);
-					for (int ring = options_.smallest_ring; ring <= options_.largest_ring; ++ring) {
-						const Moments& moments = scratch.moments[static_cast<std::size_t>(ring)];
-						if (moments.count == 0)
-							continue;
-						const Fit fitted = fit(moments);
-						if (free_members(moments, fitted.terms()) > 0)
-							variances[at(k)][static_cast<std::size_t>(ring)] =
-								fitted.residual() / free_members(moments, fitted.terms());
-					}
-				}
-			});
-		for (int ring = options_.smallest_ring; ring <= options_.largest_ring; ++ring) {
-			std::vector<double> of_ring;
-			for (const Variances& variance : variances) {
-				if (variance[static_cast<std::size_t>(ring)] >= 0)
-					of_ring.push_back(variance[static_cast<std::size_t>(ring)]);
-			}
-			floors_[static_cast<std::size_t>(ring)] = quantile(of_ring, FLOOR_QUANTILE);
+		for (; group < group_ends_[at(ring)]; ++group) {
+			const Group& members = groups_[group];
+			sums.add(members.x, members.y, members.data, members.weight);
 		}
-	}
-
-	void fit_structure(Index i, Scratch& scratch)
-	{
-		if (!takes_part(i))
-			return;
-		Structure& structure = structures_[at(i)];
-		gather(i, scratch, structure);
-		double least_risk = std::numeric_limits<double>::infinity();
-		for (int ring = options_.smallest_ring; ring <= options_.largest_ring; ++ring) {
-			const Moments& moments = scratch.moments[static_cast<std::size_t>(ring)];
-			if (moments.count == 0)
-				continue;
-			const Fit fitted = fit(moments);
-			const double floor = floors_[static_cast<std::size_t>(ring)];
-			const int free = free_members(moments, fitted.terms());
-			const double noise = free > 0 ? std::min(fitted.residual() / free, floor) : floor;
-
-			std::uint32_t kept = 1;
-			std::size_t kept_count = 1;
-			double residual = fitted.residual();
-			for (std::size_t term = 1; term < fitted.terms(); ++term) {
-				if (fitted.energy(term) > options_.selection * noise) {
-					kept |= 1U << term;
-					++kept_count;
-				}
-				else {
-					residual += fitted.energy(term);
-				}
-			}
-			const int kept_free = free_members(moments, kept_count);
-			const double variance = kept_free > 0 ? residual / kept_free : floor;
-			const double members = moments.count;
-			const double terms = 1.0 + static_cast<double>(kept_count);
-			const double risk =
-				floor * terms / members +
-				BIAS_SHARE * std::max(0.0, variance - floor * (1 + 1 / std::sqrt(members)));
-			if (risk < least_risk) {
-				least_risk = risk;
-				structure.polynomial = fitted.polynomial(kept);
-				structure.weight = 1 / std::sqrt(variance * terms + LEAST_VARIANCE);
-				structure.rings = ring;
-			}
-			else if (risk > HOPELESS * least_risk) {
-				break;
-			}
-		}
-	}
-
-	Point votes_for(Index j, RingCollector& rings) const
-	{
-		const Point& data = field_.data[at(j)];
-		if (!(field_.weights[at(j)] > 0))
-			return data;
-		rings.collect(j, options_.largest_ring);
-		Point sum = Point::Zero();
-		std::size_t k = 0;
-		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
-			for (; k < rings.count_within(ring); ++k) {
-				const Index i = rings.faces()[k];
-				const Structure& structure = structures_[at(i)];
-				if (structure.rings < ring || structure.weight == 0 || !is_member(i, j))
-					continue;
-				const Point offset = scale_ * (field_.nodes[at(j)] - field_.nodes[at(i)]);
-				const auto terms =
-					monomials<2>(offset.dot(structure.tangent), offset.dot(structure.bitangent));
-				Point vote = Point::Zero();
-				for (std::size_t term = 0; term < terms.size(); ++term)
-					vote +=
-						terms[term] * Eigen::Map<const Point>(structure.polynomial[term].data());
-				const double length = vote.norm();
-				if (length > 0)
-					sum += structure.weight / length * vote;
-			}
-		}
-		const double length = sum.norm();
-		return length > 0 ? Point(sum / length) : data;
 	}
 
 	const Workspace& workspace_;
 	const NormalField& field_;
 	const NormalFilterOptions& options_;
 	double scale_;
-	std::vector<Scratch> scratch_;
-	std::array<double, NormalFilterOptions::MAX_RINGS + 1> floors_ = {};
-	std::vector<Structure> structures_;
+	Patch patch_;
+	RingCollector rings_;
+	std::vector<Observation> observations_;
+
+	// Of the structure at hand:
+	std::vector<Index> members_;
+	std::vector<Group> groups_;
+	/// Members within each number of rings, and groups of them.
+	std::array<int, RINGS> counts_ = {};
+	std::array<std::size_t, RINGS> group_ends_ = {};
+	Point tangent_;
+	Point bitangent_;
 };
+
+std::size_t degree_for(int members)
+{
+	return members >= MEMBERS_FOR_QUADRATIC ? 2 : members >= MEMBERS_FOR_LINEAR ? 1 : 0;
+}
+
+/// Fits the structures and lets them vote.
+class Voter {
+public:
+	Voter(Structures& structures, const NormalFilterOptions& options, const Variances& floors) :
+			structures_(structures), options_(options), floors_(floors)
+	{
+	}
+
+	const Patch& patch() const { return structures_.patch(); }
+	void enter(Index number) { structures_.enter(number); }
+
+	void vote(Index i, std::vector<Point>& sums)
+	{
+		Polynomial best;
+		double least_risk = std::numeric_limits<double>::infinity();
+		structures_.for_each_size(i, [&](const Fit& fitted, std::size_t lane, int ring, int members) {
+			const double floor = floors_[at(ring)];
+			const std::size_t terms = fitted.terms(degree_for(members), lane);
+			double residual = fitted.residual(terms, lane);
+			const int free = members - static_cast<int>(terms);
+			const double noise = free > 0 ? std::min(residual / free, floor) : floor;
+
+			std::uint32_t kept = 1;
+			int kept_count = 1;
+			for (std::size_t term = 1; term < terms; ++term) {
+				if (fitted.energy(term, lane) > options_.selection * noise) {
+					kept |= 1U << term;
+					++kept_count;
+				}
+				else {
+					residual += fitted.energy(term, lane);
+				}
+			}
+			const int kept_free = members - kept_count;
+			const double variance = kept_free > 0 ? residual / kept_free : floor;
+			const double risk =
+				floor * (1 + kept_count) / members +
+				BIAS_SHARE *
+					std::max(0.0, variance - floor * (1 + 1 / std::sqrt(double(members))));
+			if (risk < least_risk) {
+				least_risk = risk;
+				best.coefficients = fitted.polynomial(kept, terms, lane);
+				best.weight = 1 / std::sqrt(variance * (1 + kept_count) + LEAST_VARIANCE);
+				best.rings = ring;
+			}
+			return risk <= HOPELESS * least_risk;
+		});
+		if (best.rings > 0)
+			structures_.add_votes(best, sums);
+	}
+
+private:
+	Structures& structures_;
+	const NormalFilterOptions& options_;
+	const Variances& floors_;
+};
+
+// The noise variance of the data, as structures of each size see it.
+Variances measure_noise_floors(
+	const Workspace& workspace,
+	const NormalField& field,
+	const NormalFilterOptions& options,
+	std::deque<Structures>& structures)
+{
+	const Index wanted = std::min(
+		LARGEST_SAMPLE, std::max(LEAST_SAMPLE, workspace.mesh.face_count() / SAMPLE_EVERY));
+	std::vector<Index> sample = sample_by_value(field.weights, wanted);
+	std::sort(sample.begin(), sample.end());
+	std::vector<Variances> variances(sample.size());
+	workspace.execution.parallel_for(
+		Patch::count(workspace), 1, [&](Index begin, Index end, int worker) {
+			Structures& own = structures[static_cast<std::size_t>(worker)];
+			for (Index number = begin; number < end; ++number) {
+				const Index first = number * Patch::OWN_FACES;
+				auto it = std::lower_bound(sample.begin(), sample.end(), first);
+				if (it == sample.end() || *it >= first + Patch::OWN_FACES)
+					continue;
+				own.enter(number);
+				for (; it != sample.end() && *it < first + Patch::OWN_FACES; ++it) {
+					Variances& of_sizes = variances[static_cast<std::size_t>(it - sample.begin())];
+					of_sizes.fill(-1);
+					own.for_each_size(
+						*it - first, [&](const Fit& fitted, std::size_t lane, int ring, int members) {
+							const std::size_t terms = fitted.terms(degree_for(members), lane);
+							const int free = members - static_cast<int>(terms);
+							if (free > 0)
+								of_sizes[at(ring)] =
+									fitted.residual(terms, lane) / free;
+							return true;
+						});
+				}
+			}
+		});
+	Variances floors = {};
+	for (int ring = options.smallest_ring; ring <= options.largest_ring; ++ring) {
+		std::vector<double> of_ring;
+		for (const Variances& variance : variances) {
+			if (variance[at(ring)] >= 0)
+				of_ring.push_back(variance[at(ring)]);
+		}
+		floors[at(ring)] = quantile(of_ring, FLOOR_QUANTILE);
+	}
+	return floors;
+}
 
 } // namespace
 
 std::vector<Point> filter_normals(
 	const Workspace& workspace, const NormalField& field, const NormalFilterOptions& options)
 {
-	return Filter(workspace, field, options).run();
+	// A deque, since structures do not move.
+	std::deque<Structures> structures;
+	for (int worker = 0; worker < workspace.execution.threads(); ++worker)
+		structures.emplace_back(workspace, field, options);
+	workspace.execution.begin_part(0, 16);
+	const Variances floors = measure_noise_floors(workspace, field, options, structures);
+	workspace.execution.begin_part(1, 16, 15);
+	std::vector<Voter> voters;
+	for (Structures& own : structures)
+		voters.emplace_back(own, options, floors);
+	std::vector<Point> result = sum_votes(workspace, voters);
+	for (std::size_t i = 0; i < result.size(); ++i) {
+		const double length = result[i].norm();
+		result[i] = length > 0 && field.weights[i] > 0 ? Point(result[i] / length) : field.data[i];
+	}
+	return result;
 }
 
 } // namespace orthopoly

@@ -166,7 +166,7 @@ TEST_CASE("Open boundaries keep their outline", "[adaptive_method]")
 		const TriangleMesh mesh = noisy(truth, sigma);
 		const std::vector<Point> found = run(mesh).positions;
 		const std::vector<std::uint8_t> boundary =
-			boundary_vertices(mesh.vertex_count(), mesh.faces);
+			edge_defects(mesh).boundary;
 		double inwards = 0;
 		double height_before = 0;
 		double height_after = 0;

@@ -291,7 +291,7 @@ TEST_CASE("a kept boundary stays bit for bit, the rest moves", "[denoise]")
 {
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
 	const TriangleMesh mesh = with_noise(make_height_field(2000), 0.2, NoiseDirection::Random);
-	const std::vector<std::uint8_t> boundary = boundary_vertices(mesh.vertex_count(), mesh.faces);
+	const std::vector<std::uint8_t> boundary = edge_defects(mesh).boundary;
 	DenoiseOptions options = options_of(method);
 	options.keep_boundary = true;
 	const DenoiseResult kept = run(mesh, options);

@@ -252,9 +252,12 @@ TEST_CASE("Normals from heights are the same on any number of threads", "[height
 TEST_CASE("The height filter can be stopped", "[height_filter]")
 {
 	const TriangleMesh mesh = make_flat_grid(10);
-	Progress progress([](int, const std::string&) { return false; });
+	bool go_on = true;
+	Progress progress([&](int, const std::string&) { return go_on; });
 	Execution execution(1, progress);
 	const Workspace workspace(mesh, execution);
+	go_on = false;
+	progress.report(1, "stop");
 	const FaceGeometry geometry = face_geometry(mesh.positions, mesh.faces);
 	CHECK_THROWS_AS(
 		normals_from_heights(workspace, {geometry.normals, geometry.centroids, mesh.positions}, {}),

@@ -268,9 +268,12 @@ TEST_CASE("Filtered normals are the same on any number of threads", "[normal_fil
 TEST_CASE("The normal filter can be stopped", "[normal_filter]")
 {
 	const TriangleMesh mesh = make_flat_grid(10);
-	Progress progress([](int, const std::string&) { return false; });
+	bool go_on = true;
+	Progress progress([&](int, const std::string&) { return go_on; });
 	Execution execution(1, progress);
 	const Workspace workspace(mesh, execution);
+	go_on = false;
+	progress.report(1, "stop");
 	const FaceGeometry geometry = face_geometry(mesh.positions, mesh.faces);
 	CHECK_THROWS_AS(filter_normals(workspace, field_of(geometry), {}), Cancelled);
 }

@@ -145,7 +145,7 @@ TEST_CASE("The paper's method leaves fixed vertices alone", "[paper_method]")
 		mesh.fixed[i] = 1;
 	DenoiseOptions options = paper_options();
 	options.keep_boundary = true;
-	const std::vector<std::uint8_t> boundary = boundary_vertices(mesh.vertex_count(), mesh.faces);
+	const std::vector<std::uint8_t> boundary = edge_defects(mesh).boundary;
 	REQUIRE(std::count(boundary.begin(), boundary.end(), 1) > 50);
 	const DenoiseResult result = run(mesh, options);
 	Index moved = 0;

@@ -115,7 +115,7 @@ TEST_CASE("A flat outline stays where it is, what is inside it moves", "[prefilt
 	double most_inside = 0;
 	for (std::size_t i = 0; i < smooth.size(); ++i) {
 		const double moved = (smooth[i] - mesh.positions[i]).norm();
-		if (f.workspace.boundary[i] != 0)
+		if (f.workspace.edges.boundary[i] != 0)
 			CHECK(moved < 1e-14);
 		else
 			most_inside = std::max(most_inside, moved);
@@ -131,7 +131,7 @@ TEST_CASE("A bent outline moves along its normal only", "[prefilter]")
 	const std::vector<Point> smooth = smoothed(f, 1e-5);
 	int moved = 0;
 	for (std::size_t i = 0; i < smooth.size(); ++i) {
-		if (f.workspace.boundary[i] == 0)
+		if (f.workspace.edges.boundary[i] == 0)
 			continue;
 		const Point offset = smooth[i] - f.mesh.positions[i];
 		CHECK(offset.cross(normals[i]).norm() < 1e-4 * offset.norm() + 1e-15);
@@ -147,7 +147,7 @@ TEST_CASE("The outline of a noisy open mesh is smoothed too", "[prefilter]")
 	double before = 0;
 	double after = 0;
 	for (std::size_t i = 0; i < smooth.size(); ++i) {
-		if (f.workspace.boundary[i] == 0)
+		if (f.workspace.edges.boundary[i] == 0)
 			continue;
 		before += std::pow(f.mesh.positions[i].z(), 2);
 		after += std::pow(smooth[i].z(), 2);

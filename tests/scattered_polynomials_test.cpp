@@ -56,13 +56,46 @@ typename Fit::Moments moments_of(const Nodes& nodes)
 	return moments;
 }
 
+/// A fit of at most some degree.
 template<class Fit>
-Fit fit_of(const Nodes& nodes, int degree)
+class FitOfDegree {
+public:
+	static constexpr std::size_t TERMS = Fit::TERMS;
+
+	FitOfDegree(const Nodes& nodes, std::size_t degree) :
+			fit_(moments_of<Fit>(nodes)), terms_(fit_.terms(degree))
+	{
+	}
+
+	std::size_t terms() const { return terms_; }
+	double residual() const { return fit_.residual(terms_); }
+	double energy(std::size_t term) const { return fit_.energy(term); }
+	Value coefficients(std::size_t term) const
+	{
+		return {
+			fit_.coefficient(term, 0), fit_.coefficient(term, 1), fit_.coefficient(term, 2)};
+	}
+	typename Fit::Coefficients polynomial(std::uint32_t kept) const
+	{
+		return fit_.polynomial(kept, terms_);
+	}
+	typename Fit::Terms orthonormal(const typename Fit::Terms& values) const
+	{
+		return fit_.orthonormal(values);
+	}
+
+private:
+	Fit fit_;
+	std::size_t terms_;
+};
+
+template<class Fit>
+FitOfDegree<Fit> fit_of(const Nodes& nodes, std::size_t degree)
 {
-	return Fit(moments_of<Fit>(nodes), degree);
+	return {nodes, degree};
 }
 
-constexpr int degree_of(std::size_t terms)
+constexpr std::size_t degree_of(std::size_t terms)
 {
 	return terms == 10 ? 3 : 2;
 }
@@ -94,7 +127,7 @@ std::vector<double> unit_mean_weights(const Nodes& nodes)
 template<class Fit>
 double orthonormality_error(const Nodes& nodes)
 {
-	const Fit fit = fit_of<Fit>(nodes, degree_of(Fit::TERMS));
+	const FitOfDegree<Fit> fit = fit_of<Fit>(nodes, degree_of(Fit::TERMS));
 	REQUIRE(fit.terms() == Fit::TERMS);
 	const std::vector<double> weights = unit_mean_weights(nodes);
 	using Matrix = Eigen::Matrix<double, int(Fit::TERMS), int(Fit::TERMS)>;
@@ -154,9 +187,9 @@ TEST_CASE("Nodes off the centre, squeezed and few keep them orthonormal", "[scat
 TEST_CASE("Polynomials up to the degree come back exactly", "[scattered_polynomials]")
 {
 	std::mt19937 generator(11);
-	for (int degree = 0; degree <= 3; ++degree) {
+	for (std::size_t degree = 0; degree <= 3; ++degree) {
 		Cubic::Coefficients wanted = {};
-		for (std::size_t k = 0; k < std::size_t(term_count(degree)); ++k) {
+		for (std::size_t k = 0; k < term_count(degree); ++k) {
 			for (double& value : wanted[k])
 				value = draw(generator);
 		}
@@ -182,8 +215,8 @@ TEST_CASE("Polynomials up to the degree come back exactly", "[scattered_polynomi
 TEST_CASE("The fit is the weighted least-squares one", "[scattered_polynomials]")
 {
 	const Nodes nodes = random_nodes(35, 21);
-	for (int degree = 0; degree <= 3; ++degree) {
-		const int terms = term_count(degree);
+	for (std::size_t degree = 0; degree <= 3; ++degree) {
+		const int terms = static_cast<int>(term_count(degree));
 		Eigen::MatrixXd rows(35, terms);
 		Eigen::MatrixXd values(35, 3);
 		for (int i = 0; i < 35; ++i) {
@@ -209,11 +242,11 @@ TEST_CASE("Coefficients do not change when others are dropped", "[scattered_poly
 	const Nodes nodes = random_nodes(40, 31);
 	const auto whole = fit_of<Cubic>(nodes, 3);
 	// Of a lower degree, they are the first ones, bit for bit.
-	for (int degree = 0; degree < 3; ++degree) {
+	for (std::size_t degree = 0; degree < 3; ++degree) {
 		const auto lower = fit_of<Cubic>(nodes, degree);
-		REQUIRE(lower.terms() == std::size_t(term_count(degree)));
+		REQUIRE(lower.terms() == term_count(degree));
 		for (std::size_t k = 0; k < lower.terms(); ++k)
-			CHECK(lower.coefficients()[k] == whole.coefficients()[k]);
+			CHECK(lower.coefficients(k) == whole.coefficients(k));
 	}
 	// Of what a choice of them leaves over, all that were dropped are found again, and no more.
 	for (const std::uint32_t kept : {0x001U, 0x007U, 0x015U, 0x209U, 0x3feU, 0x000U}) {
@@ -227,8 +260,8 @@ TEST_CASE("Coefficients do not change when others are dropped", "[scattered_poly
 		const auto again = fit_of<Cubic>(rest, 3);
 		for (std::size_t k = 0; k < Cubic::TERMS; ++k) {
 			for (std::size_t c = 0; c < 3; ++c) {
-				const double expected = (kept >> k & 1U) != 0 ? 0 : whole.coefficients()[k][c];
-				CHECK(again.coefficients()[k][c] == Approx(expected).margin(1e-10));
+				const double expected = (kept >> k & 1U) != 0 ? 0 : whole.coefficients(k)[c];
+				CHECK(again.coefficients(k)[c] == Approx(expected).margin(1e-10));
 			}
 		}
 	}
@@ -343,7 +376,8 @@ TEST_CASE("Weights count as that many nodes, their size does not matter", "[scat
 	for (Node& node : heavy)
 		node.weight *= 1024;
 	const auto fit = fit_of<Quadratic>(heavy, 2);
-	CHECK(fit.coefficients() == light.coefficients());
+	for (std::size_t k = 0; k < Quadratic::TERMS; ++k)
+		CHECK(fit.coefficients(k) == light.coefficients(k));
 	CHECK(fit.residual() == light.residual());
 
 	// A node without weight is as good as none.
@@ -379,12 +413,71 @@ TEST_CASE("Moments may be added to between fits", "[scattered_polynomials]")
 {
 	const Nodes nodes = random_nodes(30, 101);
 	Quadratic::Moments moments;
+	const auto check = [&](const Nodes& so_far) {
+		CHECK(
+			Quadratic(moments).polynomial(0x3f, Quadratic::TERMS) ==
+			fit_of<Quadratic>(so_far, 2).polynomial(0x3f));
+	};
 	for (std::size_t i = 0; i < nodes.size(); ++i) {
 		moments.add(nodes[i].x, nodes[i].y, nodes[i].value, nodes[i].weight);
 		if (i == 14)
-			CHECK(
-				Quadratic(moments, 2).coefficients() ==
-				fit_of<Quadratic>(Nodes(nodes.begin(), nodes.begin() + 15), 2).coefficients());
+			check(Nodes(nodes.begin(), nodes.begin() + 15));
 	}
-	CHECK(Quadratic(moments, 2).coefficients() == fit_of<Quadratic>(nodes, 2).coefficients());
+	check(nodes);
+}
+
+TEST_CASE("Structures fitted side by side come out as alone, bit for bit", "[scattered_polynomials]")
+{
+	// One of them has too few nodes, one none.
+	const std::array<int, LANES> counts = {40, 7, 0, 23};
+	std::array<ScatteredMoments<3, 3>, LANES> moments;
+	for (std::size_t lane = 0; lane < LANES; ++lane)
+		moments[lane] = moments_of<Cubic>(random_nodes(counts[lane], 91));
+	const ScatteredFit<3, 3, Lanes> together(side_by_side(moments));
+	for (std::size_t lane = 0; lane < LANES; ++lane) {
+		CAPTURE(lane);
+		const Cubic alone(moments[lane]);
+		const std::size_t terms = alone.terms(3);
+		REQUIRE(together.terms(3, lane) == terms);
+		REQUIRE((terms > 0) == (counts[lane] > 0));
+		CHECK(together.residual(terms, lane) == alone.residual(terms));
+		const auto slopes = together.orthonormal({0, 1, 0});
+		for (std::size_t k = 0; k < terms; ++k) {
+			CHECK(together.energy(k, lane) == alone.energy(k));
+			CHECK(slopes[k][lane] == alone.orthonormal({0, 1, 0})[k]);
+		}
+		const std::uint32_t kept = 0x1c7U & ((1U << terms) - 1);
+		CHECK(together.polynomial(kept, terms, lane) == alone.polynomial(kept, terms));
+	}
+}
+
+TEST_CASE("Nodes taken in four at a time give the same sums", "[scattered_polynomials]")
+{
+	const Nodes nodes = random_nodes(22, 95);
+	ScatteredMoments<2, 3, Lanes> lanes;
+	for (std::size_t k = 0; k < nodes.size(); k += LANES) {
+		// The last group is filled up with a node of no weight.
+		const auto gather = [&](auto value_of) {
+			std::array<double, LANES> values = {};
+			for (std::size_t lane = 0; lane < LANES && k + lane < nodes.size(); ++lane)
+				values[lane] = value_of(nodes[k + lane]);
+			return Lanes(values);
+		};
+		lanes.add(
+			gather([](const Node& n) { return n.x; }),
+			gather([](const Node& n) { return n.y; }),
+			{gather([](const Node& n) { return n.value[0]; }),
+			 gather([](const Node& n) { return n.value[1]; }),
+			 gather([](const Node& n) { return n.value[2]; })},
+			gather([](const Node& n) { return n.weight; }));
+	}
+	ScatteredMoments<2, 3> found;
+	add_up(lanes, 22, found);
+	const ScatteredMoments<2, 3> expected = moments_of<Quadratic>(nodes);
+	CHECK(found.count == expected.count);
+	CHECK(found.energy == Approx(expected.energy));
+	for (std::size_t k = 0; k < expected.powers.size(); ++k)
+		CHECK(found.powers[k] == Approx(expected.powers[k]).margin(1e-12));
+	for (std::size_t k = 0; k < expected.values.size(); ++k)
+		CHECK(found.values[k][1] == Approx(expected.values[k][1]).margin(1e-12));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "adjacency.h"
 #include "triangle_mesh.h"
 
 #include <algorithm>
@@ -38,6 +39,13 @@ inline double largest_distance(const std::vector<Point>& a, const std::vector<Po
 	for (std::size_t i = 0; i < a.size(); ++i)
 		largest = std::max(largest, (a[i] - b[i]).norm());
 	return largest;
+}
+
+inline EdgeDefects edge_defects(const TriangleMesh& mesh)
+{
+	Progress silent;
+	Execution execution(1, silent);
+	return find_edge_defects(mesh.faces, vertex_faces(mesh.vertex_count(), mesh.faces), execution);
 }
 
 /// A square of side 1 in the plane z = 0, looking up, its corners in order.

@@ -156,9 +156,12 @@ TEST_CASE("Vertices move the same on any number of threads", "[vertex_update][pa
 TEST_CASE("The vertex update can be stopped", "[vertex_update]")
 {
 	const TriangleMesh mesh = make_flat_grid(4);
-	Progress progress([](int, const std::string&) { return false; });
+	bool go_on = true;
+	Progress progress([&](int, const std::string&) { return go_on; });
 	Execution execution(1, progress);
 	const Workspace workspace(mesh, execution);
+	go_on = false;
+	progress.report(1, "stop");
 	std::vector<Point> positions = mesh.positions;
 	const std::vector<Point> normals(mesh.faces.size(), Point(0, 0, 1));
 	CHECK_THROWS_AS(update_vertices(workspace, normals, {}, positions), Cancelled);

@@ -15,7 +15,7 @@ TEST_CASE("a workspace has the connectivity of its mesh", "[workspace]")
 	const Workspace workspace(mesh, execution);
 	CHECK(&workspace.mesh == &mesh);
 	CHECK(workspace.vertex_faces.offsets.size() == mesh.positions.size() + 1);
-	CHECK(workspace.boundary == std::vector<std::uint8_t>(mesh.positions.size(), 0));
+	CHECK(workspace.edges.boundary == std::vector<std::uint8_t>(mesh.positions.size(), 0));
 	CHECK(workspace.mean_edge_length == mean_edge_length(mesh.positions, mesh.faces));
 }
 

@@ -194,21 +194,21 @@ NormalField normal_field(const FaceGeometry& original, const FaceGeometry& curre
 /// One run of the method.
 class AdaptiveMethod {
 public:
-	AdaptiveMethod(const Workspace& workspace, const Plan& plan) :
+	AdaptiveMethod(const Workspace& workspace, const Plan& plan, std::vector<Point>& positions) :
 			workspace_(workspace), plan_(plan), sigma_(plan.noise * workspace.mean_edge_length),
-			positions_(workspace.mesh.positions)
+			positions_(positions)
 	{
 	}
 
-	std::vector<Point> run()
+	void run()
 	{
 		prefilter();
 		// The level is in edge lengths of the surface below the noise, which lengthens them.
-		sigma_ = plan_.noise * mean_edge_length(positions_, workspace_.mesh.faces);
+		sigma_ = plan_.noise * mean_edge_length(workspace_, positions_);
 		const std::vector<Point> start = positions_;
-		const FaceGeometry original = face_geometry(positions_, workspace_.mesh.faces);
+		const FaceGeometry original = face_geometry(workspace_, positions_);
 		for (int iteration = 0; iteration < plan_.iterations; ++iteration) {
-			const FaceGeometry current = face_geometry(positions_, workspace_.mesh.faces);
+			const FaceGeometry current = face_geometry(workspace_, positions_);
 			std::vector<Point> normals = filter(original, current, iteration);
 			if (iteration + 1 == plan_.iterations && !plan_.scanner)
 				refine(current, normals);
@@ -220,7 +220,6 @@ public:
 			update_vertices(workspace_, normals, update, positions_);
 			bound_drift(start);
 		}
-		return std::move(positions_);
 	}
 
 private:
@@ -308,13 +307,16 @@ private:
 	const Plan& plan_;
 	/// Noise in the caller's length unit.
 	double sigma_ = 0;
-	std::vector<Point> positions_;
+	std::vector<Point>& positions_;
 };
 
 } // namespace
 
 void run_adaptive_method(
-	const Workspace& workspace, const DenoiseOptions& options, DenoiseResult& result)
+	const Workspace& workspace,
+	const DenoiseOptions& options,
+	DenoiseResult& result,
+	std::vector<Point>& positions)
 {
 	workspace.execution.begin_phase(0.05, 0.1, "estimating the noise");
 	result.estimated_noise = estimate_noise_level(workspace, workspace.mesh.positions);
@@ -326,7 +328,7 @@ void run_adaptive_method(
 		result.status = DenoiseResult::Status::NothingToDo;
 		return;
 	}
-	result.positions = AdaptiveMethod(workspace, plan).run();
+	AdaptiveMethod(workspace, plan, positions).run();
 	result.iterations_done = plan.iterations;
 }
 

@@ -2,6 +2,7 @@
 #include "adjacency.h"
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 
 namespace orthopoly {
@@ -19,41 +20,31 @@ bool first_mention(const Face& face, std::size_t k)
 	return (k == 0 || face[k] != face[0]) && (k != 2 || face[2] != face[1]);
 }
 
-// An edge as one of its faces runs along it: its ends in ascending order, and whether they were
-// swapped.
-struct DirectedEdge {
-	Index low;
-	Index high;
-	bool swapped;
+// An edge seen from one of its ends, as one of its faces runs along it.
+struct EdgeMention {
+	Index other;
+	bool leaves;
 
-	bool same_ends(const DirectedEdge& other) const
+	bool operator<(const EdgeMention& mention) const
 	{
-		return low == other.low && high == other.high;
+		return std::tie(other, leaves) < std::tie(mention.other, mention.leaves);
 	}
 };
 
-// Calls visit(begin, end) with the mentions of each edge.
-template<class Visit>
-void for_each_edge(const std::vector<Face>& faces, Visit visit)
+constexpr Index GRAIN = 1024;
+
+// The edges of a face that has two different ends, one of them the vertex.
+void add_mentions(const Face& face, Index vertex, std::vector<EdgeMention>& mentions)
 {
-	std::vector<DirectedEdge> edges;
-	edges.reserve(3 * faces.size());
-	for (const Face& face : faces) {
-		for (std::size_t k = 0; k < 3; ++k) {
-			const Index a = face[k];
-			const Index b = face[(k + 1) % 3];
-			if (a != b)
-				edges.push_back({std::min(a, b), std::max(a, b), a > b});
-		}
-	}
-	std::sort(edges.begin(), edges.end(), [](const DirectedEdge& a, const DirectedEdge& b) {
-		return std::tie(a.low, a.high, a.swapped) < std::tie(b.low, b.high, b.swapped);
-	});
-	for (auto begin = edges.cbegin(); begin != edges.cend();) {
-		const auto end = std::find_if(
-			begin, edges.cend(), [&](const DirectedEdge& edge) { return !edge.same_ends(*begin); });
-		visit(begin, end);
-		begin = end;
+	for (std::size_t k = 0; k < 3; ++k) {
+		const Index a = face[k];
+		const Index b = face[(k + 1) % 3];
+		if (a == b)
+			continue;
+		if (a == vertex)
+			mentions.push_back({b, true});
+		if (b == vertex)
+			mentions.push_back({a, false});
 	}
 }
 
@@ -90,24 +81,43 @@ IndexLists vertex_faces(Index vertex_count, const std::vector<Face>& faces)
 	return lists;
 }
 
-std::vector<std::uint8_t> boundary_vertices(Index vertex_count, const std::vector<Face>& faces)
+EdgeDefects find_edge_defects(
+	const std::vector<Face>& faces, const IndexLists& vertex_faces, Execution& execution)
 {
-	std::vector<std::uint8_t> flags(at(vertex_count), 0);
-	for_each_edge(faces, [&](auto begin, auto end) {
-		if (end - begin != 2)
-			flags[at(begin->low)] = flags[at(begin->high)] = 1;
-	});
-	return flags;
-}
-
-Index count_non_manifold_edges(const std::vector<Face>& faces)
-{
-	Index count = 0;
-	for_each_edge(faces, [&](auto begin, auto end) {
-		if (end - begin > 2 || (end - begin == 2 && begin->swapped == (begin + 1)->swapped))
-			++count;
-	});
-	return count;
+	EdgeDefects defects;
+	const std::size_t vertex_count = vertex_faces.offsets.size() - 1;
+	defects.boundary.resize(vertex_count, 0);
+	const auto workers = static_cast<std::size_t>(execution.threads());
+	std::vector<std::vector<EdgeMention>> mentions_of_worker(workers);
+	std::vector<Index> non_manifold(workers, 0);
+	execution.parallel_for(
+		static_cast<Index>(vertex_count), GRAIN, [&](Index first, Index last, int worker) {
+			std::vector<EdgeMention>& mentions = mentions_of_worker[at(worker)];
+			for (Index vertex = first; vertex < last; ++vertex) {
+				mentions.clear();
+				const Index* const end = vertex_faces.end(vertex);
+				for (const Index* it = vertex_faces.begin(vertex); it != end; ++it)
+					add_mentions(faces[at(*it)], vertex, mentions);
+				std::sort(mentions.begin(), mentions.end());
+				for (std::size_t k = 0; k < mentions.size();) {
+					const EdgeMention& mention = mentions[k];
+					std::size_t next = k;
+					while (next < mentions.size() && mentions[next].other == mention.other)
+						++next;
+					if (next - k != 2)
+						defects.boundary[at(vertex)] = 1;
+					// Counted from one of its ends.
+					const bool is_manifold =
+						next - k == 1 ||
+						(next - k == 2 && mention.leaves != mentions[k + 1].leaves);
+					if (!is_manifold && vertex < mention.other)
+						++non_manifold[at(worker)];
+					k = next;
+				}
+			}
+		});
+	defects.non_manifold = std::accumulate(non_manifold.begin(), non_manifold.end(), Index(0));
+	return defects;
 }
 
 RingCollector::RingCollector(const std::vector<Face>& faces, const IndexLists& vertex_faces) :

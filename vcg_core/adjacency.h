@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "execution.h"
 #include "triangle_mesh.h"
 
 #include <cstddef>
@@ -50,11 +51,18 @@ struct IndexLists {
 /// once. #V lists.
 IndexLists vertex_faces(Index vertex_count, const std::vector<Face>& faces);
 
-/// #V flags: one where the vertex lies on an edge that does not belong to exactly two faces.
-std::vector<std::uint8_t> boundary_vertices(Index vertex_count, const std::vector<Face>& faces);
+/// Edges where a mesh is not a closed surface.
+struct EdgeDefects {
+	/// #V flags: one where the vertex lies on an edge that does not belong to exactly two faces.
+	std::vector<std::uint8_t> boundary;
+	/// Edges that belong to more than two faces, or to two faces that run along it the same way.
+	Index non_manifold = 0;
+};
 
-/// Edges that belong to more than two faces, or to two faces that run along it the same way.
-Index count_non_manifold_edges(const std::vector<Face>& faces);
+/// Looks at every edge from both its ends. O(#F), and a logarithm of the faces around a vertex.
+/// Throws Cancelled.
+EdgeDefects find_edge_defects(
+	const std::vector<Face>& faces, const IndexLists& vertex_faces, Execution& execution);
 
 /// Collects k-rings: breadth-first over faces that share a vertex; the face itself is ring 0 and
 /// belongs to its k-ring. Each vertex is visited once, so a ring takes time in proportion to its

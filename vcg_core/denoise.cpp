@@ -3,6 +3,7 @@
 
 #include "adaptive_method.h"
 #include "errors.h"
+#include "numbering.h"
 #include "paper_method.h"
 #include "parameters.h"
 #include "workspace.h"
@@ -20,20 +21,32 @@ namespace {
 /// A method behind the entry point: another one is another line of METHODS.
 struct MethodEntry {
 	Method method;
-	void (*run)(const Workspace&, const DenoiseOptions&, DenoiseResult&);
+	void (*run)(
+		const Workspace&, const DenoiseOptions&, DenoiseResult&, std::vector<Point>& positions);
+	/// Whether the result does not depend on how the mesh is numbered, so that it may be numbered
+	/// for speed.
+	bool any_order;
 };
 
+// The paper's structures are read row by row, and where they are equally similar, in the order of
+// their faces.
 constexpr std::array<MethodEntry, 2> METHODS = {{
-	{Method::Adaptive, run_adaptive_method},
-	{Method::Paper, run_paper_method},
+	{Method::Adaptive, run_adaptive_method, true},
+	{Method::Paper, run_paper_method, false},
 }};
 
-Index count_degenerate_faces(const TriangleMesh& mesh)
+const MethodEntry& entry_of(Method method)
 {
-	return static_cast<Index>(
-		std::count_if(mesh.faces.begin(), mesh.faces.end(), [&](const Face& face) {
-			return is_degenerate(mesh.positions, face);
-		}));
+	return *std::find_if(METHODS.begin(), METHODS.end(), [&](const MethodEntry& entry) {
+		return entry.method == method;
+	});
+}
+
+Index count_degenerate_faces(const TriangleMesh& mesh, Execution& execution)
+{
+	return static_cast<Index>(execution.sum(mesh.face_count(), [&](Index i) {
+		return is_degenerate(mesh.positions, mesh.faces[static_cast<std::size_t>(i)]) ? 1.0 : 0.0;
+	}));
 }
 
 void record_displacements(const TriangleMesh& mesh, DenoiseResult& result)
@@ -79,30 +92,37 @@ DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& options, P
 		Execution execution(options.threads, progress);
 		result.resolved.threads = execution.threads();
 		execution.begin_phase(0, 0.01, "reading the mesh");
-		TriangleMesh prepared = mesh;
-		if (options.keep_boundary) {
-			prepared.fixed.resize(mesh.positions.size(), 0);
-			const std::vector<std::uint8_t> boundary =
-				boundary_vertices(mesh.vertex_count(), mesh.faces);
-			for (std::size_t i = 0; i < boundary.size(); ++i)
-				prepared.fixed[i] = prepared.fixed[i] | boundary[i];
-		}
-		result.degenerate_faces = count_degenerate_faces(mesh);
+		result.degenerate_faces = count_degenerate_faces(mesh, execution);
 		if (result.degenerate_faces == mesh.face_count())
 			throw InvalidMesh(
 				"none of the " + std::to_string(mesh.face_count()) +
 				" faces has an area, so there are no normals to filter; check the coordinates");
-		// A cancel is heard between any two of these steps, which are long on a large mesh.
+		const MethodEntry& method = entry_of(options.method);
+		const Numbering numbering =
+			method.any_order ? number_by_place(mesh, execution) : same_numbering(mesh);
+		const Point origin = method.any_order ? mesh.positions.front() : Point(Point::Zero());
+		TriangleMesh prepared = renumbered(mesh, numbering, origin);
+		// A cancel is heard between any two of these steps.
 		execution.begin_phase(0.01, 0.03, "finding neighbours");
 		const Workspace workspace(prepared, execution);
-		execution.begin_phase(0.03, 0.05, "looking for defects");
-		result.non_manifold_edges = count_non_manifold_edges(mesh.faces);
-		result.folded_faces_before = count_folded_faces(mesh.positions, workspace);
-		for (const MethodEntry& entry : METHODS) {
-			if (entry.method == options.method)
-				entry.run(workspace, options, result);
+		if (options.keep_boundary) {
+			prepared.fixed.resize(prepared.positions.size(), 0);
+			for (std::size_t i = 0; i < prepared.fixed.size(); ++i)
+				prepared.fixed[i] |= workspace.edges.boundary[i];
 		}
-		result.folded_faces_after = count_folded_faces(result.positions, workspace);
+		execution.begin_phase(0.03, 0.05, "looking for defects");
+		result.non_manifold_edges = workspace.edges.non_manifold;
+		result.folded_faces_before = count_folded_faces(prepared.positions, workspace);
+		std::vector<Point> positions = prepared.positions;
+		method.run(workspace, options, result, positions);
+		execution.begin_phase(0.99, 0.999, "looking at the result");
+		result.folded_faces_after = count_folded_faces(positions, workspace);
+		for (std::size_t i = 0; i < positions.size(); ++i) {
+			// What did not move stays bit for bit.
+			if (positions[i] != prepared.positions[i])
+				result.positions[static_cast<std::size_t>(numbering.vertices[i])] =
+					positions[i] + origin;
+		}
 		record_displacements(mesh, result);
 		progress.report(1, "done");
 	}

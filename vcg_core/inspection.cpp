@@ -87,11 +87,14 @@ Inspection inspect(const TriangleMesh& mesh)
 		found.unreferenced_vertices += around.size(i) == 0 ? 1 : 0;
 	for (const Face& face : mesh.faces)
 		found.degenerate_faces += is_degenerate(mesh.positions, face) ? 1 : 0;
-	for (const std::uint8_t flag : boundary_vertices(mesh.vertex_count(), mesh.faces))
+	Progress silent;
+	Execution execution(1, silent);
+	const EdgeDefects edges = find_edge_defects(mesh.faces, around, execution);
+	for (const std::uint8_t flag : edges.boundary)
 		found.boundary_vertices += flag;
 	found.duplicate_vertices = count_duplicate_vertices(mesh);
 	found.duplicate_faces = count_duplicate_faces(mesh);
-	found.non_manifold_edges = count_non_manifold_edges(mesh.faces);
+	found.non_manifold_edges = edges.non_manifold;
 	found.components = count_components(mesh.faces, around);
 	return found;
 }

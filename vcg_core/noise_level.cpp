@@ -144,7 +144,7 @@ double estimate_noise_level(const Workspace& workspace, const std::vector<Point>
 		std::remove_if(variances.begin(), variances.end(), [](double v) { return v < 0; }),
 		variances.end());
 	// Noise lengthens the edges: those of the smoothed mesh are closer to the true ones.
-	const double length = mean_edge_length(smooth, workspace.mesh.faces);
+	const double length = mean_edge_length(workspace, smooth);
 	return length > 0 ? std::sqrt(quantile(variances, QUANTILE)) / (QUANTILE_RATIO * length) : 0;
 }
 

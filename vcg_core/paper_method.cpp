@@ -73,7 +73,7 @@ public:
 				begin + from * (end - begin), begin + to * (end - begin), name + ": " + step);
 		};
 		phase(0, GUIDE_END, "guide directions");
-		const FaceGeometry geometry = face_geometry(positions, workspace_.mesh.faces);
+		const FaceGeometry geometry = face_geometry(workspace_, positions);
 		const std::vector<Point> guides = guide_directions(workspace_, geometry, guide_);
 		phase(GUIDE_END, FIT_END, "fitting normals");
 		const std::vector<Point> normals =
@@ -92,7 +92,10 @@ private:
 } // namespace
 
 void run_paper_method(
-	const Workspace& workspace, const DenoiseOptions& options, DenoiseResult& result)
+	const Workspace& workspace,
+	const DenoiseOptions& options,
+	DenoiseResult& result,
+	std::vector<Point>& positions)
 {
 	result.resolved = resolve(options);
 	result.resolved.threads = workspace.execution.threads();
@@ -108,7 +111,7 @@ void run_paper_method(
 			begin,
 			begin + length,
 			"iteration " + std::to_string(i + 1) + " of " + std::to_string(iterations),
-			result.positions);
+			positions);
 		++result.iterations_done;
 	}
 }

@@ -44,11 +44,11 @@ void umbrella_step(
 					const Face& face = workspace.mesh.faces[at(*it)];
 					for (const Index corner : face)
 						sum += positions[at(corner)] - positions[at(i)];
-					if (workspace.boundary[at(i)] != 0)
+					if (workspace.edges.boundary[at(i)] != 0)
 						normal += face_cross_product(positions, face);
 				}
 				// Neighbours on one side only would pull the outline inwards.
-				if (workspace.boundary[at(i)] != 0)
+				if (workspace.edges.boundary[at(i)] != 0)
 					sum = normal.isZero(0) ? normal :
 											 Point(normal.dot(sum) / normal.squaredNorm() * normal);
 				moved[at(i)] += step / (2.0 * static_cast<double>(count)) * sum;

@@ -75,24 +75,38 @@ bool is_degenerate(const std::vector<Point>& positions, const Face& face)
 		DEGENERATE_RATIO * longest_edge_squared(positions, face));
 }
 
+FaceGeometry::FaceGeometry(std::size_t face_count) :
+		normals(face_count), centroids(face_count), areas(face_count)
+{
+}
+
+void FaceGeometry::measure(
+	const std::vector<Point>& positions, const std::vector<Face>& faces, std::size_t i)
+{
+	const Face& face = faces[i];
+	const Point cross = face_cross_product(positions, face);
+	const double length = cross.norm();
+	areas[i] = 0.5 * length;
+	centroids[i] =
+		(corner(positions, face, 0) + corner(positions, face, 1) + corner(positions, face, 2)) /
+		3.0;
+	normals[i] = is_degenerate(positions, face) ? Point(Point::Zero()) : Point(cross / length);
+}
+
 FaceGeometry face_geometry(const std::vector<Point>& positions, const std::vector<Face>& faces)
 {
-	FaceGeometry geometry;
-	geometry.normals.resize(faces.size());
-	geometry.centroids.resize(faces.size());
-	geometry.areas.resize(faces.size());
-	for (std::size_t i = 0; i < faces.size(); ++i) {
-		const Face& face = faces[i];
-		const Point cross = face_cross_product(positions, face);
-		const double length = cross.norm();
-		geometry.areas[i] = 0.5 * length;
-		geometry.centroids[i] =
-			(corner(positions, face, 0) + corner(positions, face, 1) + corner(positions, face, 2)) /
-			3.0;
-		geometry.normals[i] =
-			is_degenerate(positions, face) ? Point(Point::Zero()) : Point(cross / length);
-	}
+	FaceGeometry geometry(faces.size());
+	for (std::size_t i = 0; i < faces.size(); ++i)
+		geometry.measure(positions, faces, i);
 	return geometry;
+}
+
+double perimeter(const std::vector<Point>& positions, const Face& face)
+{
+	double sum = 0;
+	for (std::size_t k = 0; k < 3; ++k)
+		sum += (corner(positions, face, (k + 1) % 3) - corner(positions, face, k)).norm();
+	return sum;
 }
 
 double mean_edge_length(const std::vector<Point>& positions, const std::vector<Face>& faces)
@@ -100,10 +114,8 @@ double mean_edge_length(const std::vector<Point>& positions, const std::vector<F
 	if (faces.empty())
 		return 0;
 	double sum = 0;
-	for (const Face& face : faces) {
-		for (std::size_t k = 0; k < 3; ++k)
-			sum += (corner(positions, face, (k + 1) % 3) - corner(positions, face, k)).norm();
-	}
+	for (const Face& face : faces)
+		sum += perimeter(positions, face);
 	return sum / (3.0 * static_cast<double>(faces.size()));
 }
 

@@ -38,6 +38,12 @@ struct FaceGeometry {
 	std::vector<Point> normals;
 	std::vector<Point> centroids;
 	std::vector<double> areas;
+
+	FaceGeometry() = default;
+	explicit FaceGeometry(std::size_t face_count);
+	/// Fills in face `i`.
+	void measure(
+		const std::vector<Point>& positions, const std::vector<Face>& faces, std::size_t i);
 };
 
 /// Throws InvalidMesh where a face names a vertex that is not there or a coordinate is not
@@ -54,6 +60,9 @@ bool is_degenerate(const std::vector<Point>& positions, const Face& face);
 
 /// Normals, centroids and areas of all faces, computed in one pass. #F each.
 FaceGeometry face_geometry(const std::vector<Point>& positions, const std::vector<Face>& faces);
+
+/// Sum of the lengths of a face's edges.
+double perimeter(const std::vector<Point>& positions, const Face& face);
 
 /// Mean length of the edges, every edge of every face counted (an inner edge twice); zero for a
 /// mesh without faces. All "mean edge length" units of the options mean this one.

@@ -112,7 +112,7 @@ void update_vertices(
 				}
 				if (total > 0)
 					x += sum / total;
-				if (folded && !normal.isZero(0) && workspace.boundary[at(i)] == 0) {
+				if (folded && !normal.isZero(0) && workspace.edges.boundary[at(i)] == 0) {
 					across /= static_cast<double>(workspace.vertex_faces.size(i));
 					x += UNFOLDING_STEP *
 						 (across - across.dot(normal) / normal.squaredNorm() * normal);

@@ -14,9 +14,31 @@ constexpr Index GRAIN = 2048;
 Workspace::Workspace(const TriangleMesh& given_mesh, Execution& given_execution) :
 		mesh(given_mesh), execution(given_execution),
 		vertex_faces(orthopoly::vertex_faces(given_mesh.vertex_count(), given_mesh.faces)),
-		boundary(boundary_vertices(given_mesh.vertex_count(), given_mesh.faces)),
-		mean_edge_length(orthopoly::mean_edge_length(given_mesh.positions, given_mesh.faces))
+		edges(find_edge_defects(given_mesh.faces, vertex_faces, given_execution)),
+		mean_edge_length(orthopoly::mean_edge_length(*this, given_mesh.positions))
 {
+}
+
+FaceGeometry face_geometry(const Workspace& workspace, const std::vector<Point>& positions)
+{
+	FaceGeometry geometry(workspace.mesh.faces.size());
+	workspace.execution.parallel_for(
+		workspace.mesh.face_count(), GRAIN, [&](Index begin, Index end, int) {
+			for (Index i = begin; i < end; ++i)
+				geometry.measure(positions, workspace.mesh.faces, static_cast<std::size_t>(i));
+		});
+	return geometry;
+}
+
+double mean_edge_length(const Workspace& workspace, const std::vector<Point>& positions)
+{
+	const std::vector<Face>& faces = workspace.mesh.faces;
+	if (faces.empty())
+		return 0;
+	const double sum = workspace.execution.sum(workspace.mesh.face_count(), [&](Index i) {
+		return perimeter(positions, faces[static_cast<std::size_t>(i)]);
+	});
+	return sum / (3.0 * static_cast<double>(faces.size()));
 }
 
 Index count_folded_faces(const std::vector<Point>& positions, const Workspace& workspace)

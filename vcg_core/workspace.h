@@ -13,15 +13,15 @@ namespace orthopoly {
 /// What all steps of one computation share: the mesh as given, its connectivity (which no step
 /// changes), and the threads to run on.
 struct Workspace {
-	/// Builds the connectivity. Mesh and execution must outlive the workspace.
+	/// Builds the connectivity. Mesh and execution must outlive the workspace. Throws Cancelled.
 	Workspace(const TriangleMesh& mesh, Execution& execution);
 
 	const TriangleMesh& mesh;
 	Execution& execution;
 	/// Faces around every vertex, #V lists.
 	IndexLists vertex_faces;
-	/// Vertices on edges that do not belong to exactly two faces, #V flags.
-	std::vector<std::uint8_t> boundary;
+	/// Boundary flags, #V, and the number of non-manifold edges.
+	EdgeDefects edges;
 	/// Mean edge length of the mesh as given.
 	double mean_edge_length;
 
@@ -33,6 +33,10 @@ struct Workspace {
 		return {static_cast<std::size_t>(execution.threads()), ring_collector()};
 	}
 };
+
+/// As the functions of the same names for any mesh, on all threads.
+FaceGeometry face_geometry(const Workspace& workspace, const std::vector<Point>& positions);
+double mean_edge_length(const Workspace& workspace, const std::vector<Point>& positions);
 
 /// Faces that are folded over: their normal is more than 90 degrees away from the area-weighted
 /// mean normal of the faces around them (those that share a vertex, themselves left out).

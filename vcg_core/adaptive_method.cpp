@@ -53,6 +53,9 @@ constexpr double HEIGHT_SELECTION = 12;
 // normals: filtering the original again keeps detail that filtering the filtered would lose.
 constexpr double ORIGINAL_SHARE = 0.7;
 
+// Noise from which height structures of one ring are not worth fitting: they hold too few vertices.
+constexpr double NO_SINGLE_RINGS = 0.15;
+
 // Rings of the height structures: two more vertices away than those of the normals, since heights
 // are steadier the wider they reach.
 constexpr int HEIGHT_RINGS = 5;
@@ -282,6 +285,7 @@ private:
 	{
 		begin_phase(plan_.iterations - 1, 0.5, 0.8, "fitting heights");
 		HeightFilterOptions options;
+		options.smallest_ring = plan_.noise < NO_SINGLE_RINGS ? 1 : std::min(2, plan_.height_rings);
 		options.largest_ring = plan_.height_rings;
 		options.sigma = sigma_;
 		options.selection = HEIGHT_SELECTION;

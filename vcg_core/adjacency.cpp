@@ -121,16 +121,9 @@ EdgeDefects find_edge_defects(
 }
 
 RingCollector::RingCollector(const std::vector<Face>& faces, const IndexLists& vertex_faces) :
-		mesh_faces_(faces), vertex_faces_(vertex_faces)
+		mesh_faces_(faces), vertex_faces_(vertex_faces), face_stamps_(faces.size(), 0),
+		vertex_stamps_(vertex_faces.offsets.size() - 1, 0)
 {
-	restart();
-}
-
-void RingCollector::restart()
-{
-	stamp_ = 0;
-	face_stamps_.assign(mesh_faces_.size(), 0);
-	vertex_stamps_.assign(vertex_faces_.offsets.empty() ? 0 : vertex_faces_.offsets.size() - 1, 0);
 }
 
 void RingCollector::collect(Index face, int rings)

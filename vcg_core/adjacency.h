@@ -73,9 +73,6 @@ public:
 	/// Both must outlive the collector.
 	RingCollector(const std::vector<Face>& faces, const IndexLists& vertex_faces);
 
-	/// To be called after faces or vertex_faces have become others.
-	void restart();
-
 	/// Fills faces() with the k-ring of the face, nearest rings first.
 	void collect(Index face, int rings);
 

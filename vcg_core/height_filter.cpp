@@ -94,8 +94,7 @@ public:
 			workspace_(workspace),
 			field_(field), options_(options),
 			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring)),
-			variance_(options.sigma * scale_ * options.sigma * scale_),
-			rings_(patch_.faces(), patch_.vertex_faces()), member_ends_(at(options.largest_ring) + 1),
+			variance_(options.sigma * scale_ * options.sigma * scale_), member_ends_(at(options.largest_ring) + 1),
 			vertex_counts_(member_ends_.size()), vertex_group_ends_(member_ends_.size())
 	{
 	}
@@ -107,7 +106,6 @@ public:
 	void enter(Index number)
 	{
 		patch_.build(workspace_, number, options_.largest_ring);
-		rings_.restart();
 		guides_.clear();
 		places_.clear();
 		for (const Index i : patch_.mesh_faces()) {
@@ -147,16 +145,16 @@ private:
 	// The similar faces around a face.
 	void find_members(Index i)
 	{
-		rings_.collect(i, options_.largest_ring);
+		patch_.collect(i, options_.largest_ring);
 		const Point guide = guides_[at(i)];
-		const IndexSpan faces = rings_.faces();
+		const IndexSpan faces = patch_.collected();
 		const Point* const guides = guides_.data();
 		members_.resize(faces.size() + LANES);
 		Index* const members = members_.data();
 		std::size_t end = 0;
 		std::size_t k = 0;
 		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
-			for (; k < rings_.count_within(ring); ++k) {
+			for (; k < patch_.count_within(ring); ++k) {
 				const Index j = faces[k];
 				members[end] = j;
 				end += static_cast<std::size_t>(
@@ -230,7 +228,7 @@ private:
 	Polynomial fit()
 	{
 		Polynomial best;
-		double least_risk = std::numeric_limits<double>::infinity();
+		Choice choice;
 		Fit::Moments sums;
 		std::size_t group = 0;
 		for (int ring = options_.smallest_ring; ring <= options_.largest_ring;
@@ -246,13 +244,21 @@ private:
 			}
 			const Fit fitted(side_by_side(of_sizes));
 			const Slopes slopes(fitted);
-			for (int size = ring; size < end; ++size) {
-				const double risk =
-					judge(of_sizes[at(size - ring)], fitted, slopes, at(size - ring), size, least_risk, best);
-				if (risk > HOPELESS * least_risk)
-					return best;
-				least_risk = std::min(risk, least_risk);
+			choice.rings = 0;
+			bool goes_on = true;
+			for (int size = ring; size < end && goes_on; ++size) {
+				const std::size_t lane = at(size - ring);
+				goes_on = judge(of_sizes[lane], fitted, slopes, lane, size, choice);
 			}
+			if (choice.rings > 0) {
+				const std::size_t lane = at(choice.rings - ring);
+				best = {
+					fitted.polynomial(choice.kept, choice.terms, lane),
+					1 / (choice.least_risk + LEAST_VARIANCE),
+					choice.rings};
+			}
+			if (!goes_on)
+				break;
 		}
 		return best;
 	}
@@ -267,24 +273,32 @@ private:
 		std::array<Lanes, Fit::TERMS> along_y;
 	};
 
-	// The risk of a structure of that size, zero where there is none; takes over its polynomial
-	// where it is the least so far.
-	double judge(
+	/// The structure with the least risk so far.
+	struct Choice {
+		double least_risk = std::numeric_limits<double>::infinity();
+		std::uint32_t kept = 0;
+		std::size_t terms = 0;
+		/// 0: none of those fitted together last.
+		int rings = 0;
+	};
+
+	// Takes over the structure of that size if its risk is less; false where growing further has
+	// not paid.
+	bool judge(
 		const ScatteredMoments<3, 1>& moments,
 		const Fit& fitted,
 		const Slopes& slopes,
 		std::size_t lane,
 		int ring,
-		double least_risk,
-		Polynomial& best) const
+		Choice& choice) const
 	{
 		const int count = static_cast<int>(moments.count);
 		const std::size_t degree = count >= VERTICES_FOR_CUBIC     ? 3 :
-						   count >= VERTICES_FOR_QUADRATIC ? 2 :
-															 1;
+								   count >= VERTICES_FOR_QUADRATIC ? 2 :
+																	 1;
 		const std::size_t terms = fitted.terms(degree, lane);
 		if (count < VERTICES_FOR_PLANE || terms < PLANE_TERMS)
-			return least_risk;
+			return true;
 		double residual = fitted.residual(terms, lane);
 		std::uint32_t kept = 0;
 		int free = count;
@@ -305,12 +319,9 @@ private:
 		const double risk =
 			slope_variance +
 			BIAS_SHARE * excess(moments, free > 0 ? residual / free : variance_);
-		if (risk < least_risk) {
-			best.coefficients = fitted.polynomial(kept, terms, lane);
-			best.weight = 1 / (risk + LEAST_VARIANCE);
-			best.rings = ring;
-		}
-		return risk;
+		if (risk < choice.least_risk)
+			choice = {risk, kept, terms, ring};
+		return risk <= HOPELESS * choice.least_risk;
 	}
 
 	// Residual variance beyond what noise explains, as a slope over the radius of the structure.
@@ -372,7 +383,6 @@ private:
 	/// Of the noise, in scaled units.
 	double variance_;
 	Patch patch_;
-	RingCollector rings_;
 	std::vector<Point> guides_;
 	std::vector<Point> places_;
 	std::vector<Point> positions_;

@@ -80,8 +80,7 @@ public:
 		const Workspace& workspace, const NormalField& field, const NormalFilterOptions& options) :
 			workspace_(workspace),
 			field_(field), options_(options),
-			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring)),
-			rings_(patch_.faces(), patch_.vertex_faces())
+			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring))
 	{
 	}
 
@@ -93,7 +92,6 @@ public:
 	void enter(Index number)
 	{
 		patch_.build(workspace_, number, options_.largest_ring);
-		rings_.restart();
 		observations_.clear();
 		for (const Index i : patch_.mesh_faces())
 			observations_.push_back(
@@ -105,10 +103,10 @@ public:
 		observations_.emplace_back();
 	}
 
-	/// Calls visit(fit, lane, ring, members) for the structure of each size, smallest first, until
-	/// it returns false.
+	/// Calls visit(fit, ring, end) for the structures of `ring` rings, in lane 0, to less than
+	/// `end`, smallest ones first, until it returns false.
 	template<class Visit>
-	void for_each_size(Index i, Visit visit)
+	void for_each_fit(Index i, Visit visit)
 	{
 		if (observations_[at(i)].guide.isZero(0))
 			return;
@@ -119,21 +117,21 @@ public:
 		std::size_t group = 0;
 		for (int ring = 0; ring < options_.smallest_ring; ++ring)
 			add_ring(ring, group, sums);
-		for (int ring = options_.smallest_ring; ring <= options_.largest_ring; ring += RINGS_AT_ONCE) {
+		for (int ring = options_.smallest_ring; ring <= options_.largest_ring;
+			 ring += RINGS_AT_ONCE) {
 			const int end = std::min(ring + RINGS_AT_ONCE, options_.largest_ring + 1);
 			std::array<ScatteredMoments<2, 3>, LANES> of_sizes;
 			for (int size = ring; size < end; ++size) {
 				add_ring(size, group, sums);
 				add_up(sums, counts_[at(size)], of_sizes[at(size - ring)]);
 			}
-			const Fit fitted(side_by_side(of_sizes));
-			for (int size = ring; size < end; ++size) {
-				const int members = counts_[at(size)];
-				if (members > 0 && !visit(fitted, at(size - ring), size, members))
-					return;
-			}
+			if (!visit(Fit(side_by_side(of_sizes)), ring, end))
+				return;
 		}
 	}
+
+	/// Members within a number of rings of the structure visited last.
+	int members(int ring) const { return counts_[at(ring)]; }
 
 	/// Adds the votes of a polynomial for the members of the structure visited last.
 	void add_votes(const Polynomial& polynomial, std::vector<Point>& sums) const
@@ -175,19 +173,19 @@ private:
 	// The members of a structure, each ring filled up to whole groups.
 	void find_members(Index i)
 	{
-		rings_.collect(i, options_.largest_ring);
+		patch_.collect(i, options_.largest_ring);
 		const Observation* const observations = observations_.data();
 		const Point guide = observations[i].guide;
 		const auto nobody = static_cast<Index>(observations_.size()) - 1;
-		members_.resize(rings_.faces().size() + RINGS * LANES);
+		members_.resize(patch_.collected().size() + RINGS * LANES);
 		Index* const members = members_.data();
-		const IndexSpan faces = rings_.faces();
+		const IndexSpan faces = patch_.collected();
 		std::size_t end = 0;
 		std::size_t k = 0;
 		int count = 0;
 		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
 			const std::size_t begin = end;
-			for (; k < rings_.count_within(ring); ++k) {
+			for (; k < patch_.count_within(ring); ++k) {
 				const Index j = faces[k];
 				const Observation& other = observations[j];
 				// Bits and no branches: half of them would be guessed wrong.
@@ -261,7 +259,6 @@ private:
 	const NormalFilterOptions& options_;
 	double scale_;
 	Patch patch_;
-	RingCollector rings_;
 	std::vector<Observation> observations_;
 
 	// Of the structure at hand:
@@ -293,44 +290,72 @@ public:
 	void vote(Index i, std::vector<Point>& sums)
 	{
 		Polynomial best;
-		double least_risk = std::numeric_limits<double>::infinity();
-		structures_.for_each_size(i, [&](const Fit& fitted, std::size_t lane, int ring, int members) {
-			const double floor = floors_[at(ring)];
-			const std::size_t terms = fitted.terms(degree_for(members), lane);
-			double residual = fitted.residual(terms, lane);
-			const int free = members - static_cast<int>(terms);
-			const double noise = free > 0 ? std::min(residual / free, floor) : floor;
-
-			std::uint32_t kept = 1;
-			int kept_count = 1;
-			for (std::size_t term = 1; term < terms; ++term) {
-				if (fitted.energy(term, lane) > options_.selection * noise) {
-					kept |= 1U << term;
-					++kept_count;
-				}
-				else {
-					residual += fitted.energy(term, lane);
-				}
+		Choice choice;
+		structures_.for_each_fit(i, [&](const Fit& fitted, int ring, int end) {
+			choice.rings = 0;
+			bool goes_on = true;
+			for (int size = ring; size < end && goes_on; ++size)
+				goes_on = judge(fitted, at(size - ring), size, choice);
+			if (choice.rings > 0) {
+				const std::size_t lane = at(choice.rings - ring);
+				best = {
+					fitted.polynomial(choice.kept, choice.terms, lane),
+					choice.weight,
+					choice.rings};
 			}
-			const int kept_free = members - kept_count;
-			const double variance = kept_free > 0 ? residual / kept_free : floor;
-			const double risk =
-				floor * (1 + kept_count) / members +
-				BIAS_SHARE *
-					std::max(0.0, variance - floor * (1 + 1 / std::sqrt(double(members))));
-			if (risk < least_risk) {
-				least_risk = risk;
-				best.coefficients = fitted.polynomial(kept, terms, lane);
-				best.weight = 1 / std::sqrt(variance * (1 + kept_count) + LEAST_VARIANCE);
-				best.rings = ring;
-			}
-			return risk <= HOPELESS * least_risk;
+			return goes_on;
 		});
 		if (best.rings > 0)
 			structures_.add_votes(best, sums);
 	}
 
 private:
+	/// The structure with the least risk so far.
+	struct Choice {
+		double least_risk = std::numeric_limits<double>::infinity();
+		std::uint32_t kept = 0;
+		std::size_t terms = 0;
+		double weight = 0;
+		/// 0: none of those fitted together last.
+		int rings = 0;
+	};
+
+	// Takes over the structure of that size if its risk is less; false where growing further has
+	// not paid.
+	bool judge(const Fit& fitted, std::size_t lane, int ring, Choice& choice) const
+	{
+		const int members = structures_.members(ring);
+		if (members == 0)
+			return true;
+		const double floor = floors_[at(ring)];
+		const std::size_t terms = fitted.terms(degree_for(members), lane);
+		double residual = fitted.residual(terms, lane);
+		const int free = members - static_cast<int>(terms);
+		const double noise = free > 0 ? std::min(residual / free, floor) : floor;
+
+		std::uint32_t kept = 1;
+		int kept_count = 1;
+		for (std::size_t term = 1; term < terms; ++term) {
+			if (fitted.energy(term, lane) > options_.selection * noise) {
+				kept |= 1U << term;
+				++kept_count;
+			}
+			else {
+				residual += fitted.energy(term, lane);
+			}
+		}
+		const int kept_free = members - kept_count;
+		const double variance = kept_free > 0 ? residual / kept_free : floor;
+		const double risk =
+			floor * (1 + kept_count) / members +
+			BIAS_SHARE * std::max(0.0, variance - floor * (1 + 1 / std::sqrt(double(members))));
+		if (risk < choice.least_risk) {
+			const double weight = 1 / std::sqrt(variance * (1 + kept_count) + LEAST_VARIANCE);
+			choice = {risk, kept, terms, weight, ring};
+		}
+		return risk <= HOPELESS * choice.least_risk;
+	}
+
 	Structures& structures_;
 	const NormalFilterOptions& options_;
 	const Variances& floors_;
@@ -360,15 +385,17 @@ Variances measure_noise_floors(
 				for (; it != sample.end() && *it < first + Patch::OWN_FACES; ++it) {
 					Variances& of_sizes = variances[static_cast<std::size_t>(it - sample.begin())];
 					of_sizes.fill(-1);
-					own.for_each_size(
-						*it - first, [&](const Fit& fitted, std::size_t lane, int ring, int members) {
+					own.for_each_fit(*it - first, [&](const Fit& fitted, int ring, int fit_end) {
+						for (int size = ring; size < fit_end; ++size) {
+							const int members = own.members(size);
+							const std::size_t lane = at(size - ring);
 							const std::size_t terms = fitted.terms(degree_for(members), lane);
 							const int free = members - static_cast<int>(terms);
 							if (free > 0)
-								of_sizes[at(ring)] =
-									fitted.residual(terms, lane) / free;
-							return true;
-						});
+								of_sizes[at(size)] = fitted.residual(terms, lane) / free;
+						}
+						return true;
+					});
 				}
 			}
 		});

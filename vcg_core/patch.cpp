@@ -86,7 +86,10 @@ void Patch::build(const Workspace& workspace, Index number, int rings)
 		for (; done < end; ++done)
 			add_face(workspace, mesh_faces_[done], ring < rings);
 	}
-	vertex_faces_ = orthopoly::vertex_faces(static_cast<Index>(mesh_vertices_.size()), faces_);
+	link_faces();
+	stamp_ = 0;
+	face_stamps_.assign(faces_.size() + 1, stamp_);
+	vertex_stamps_.assign(mesh_vertices_.size(), stamp_);
 }
 
 void Patch::add_face(const Workspace& workspace, Index mesh_face, bool with_surroundings)
@@ -112,6 +115,84 @@ void Patch::add_face(const Workspace& workspace, Index mesh_face, bool with_surr
 		}
 	}
 	faces_.push_back(face);
+}
+
+void Patch::link_faces()
+{
+	const IndexLists lists =
+		vertex_faces(static_cast<Index>(mesh_vertices_.size()), faces_);
+	const auto nobody = static_cast<Index>(faces_.size());
+	FaceBlock empty;
+	empty.fill(nobody);
+	first_blocks_.assign(mesh_vertices_.size(), empty);
+	further_blocks_.clear();
+	further_offsets_.assign(1, 0);
+	for (std::size_t vertex = 0; vertex < mesh_vertices_.size(); ++vertex) {
+		const Index* const begin = lists.begin(static_cast<Index>(vertex));
+		const auto count = at(lists.size(static_cast<Index>(vertex)));
+		std::copy_n(begin, std::min(count, FACES_AT_ONCE), first_blocks_[vertex].begin());
+		for (std::size_t k = FACES_AT_ONCE; k < count; k += FACES_AT_ONCE) {
+			further_blocks_.push_back(empty);
+			std::copy_n(
+				begin + k, std::min(count - k, FACES_AT_ONCE), further_blocks_.back().begin());
+		}
+		further_offsets_.push_back(static_cast<Index>(further_blocks_.size()));
+	}
+}
+
+void Patch::collect(Index face, int rings)
+{
+	++stamp_;
+	face_stamps_.back() = stamp_;
+	face_stamps_[at(face)] = stamp_;
+	if (collected_.size() < faces_.size() + 1)
+		collected_.resize(faces_.size() + 1);
+	if (met_.size() < mesh_vertices_.size() + 1)
+		met_.resize(mesh_vertices_.size() + 1);
+	collected_[0] = face;
+	ring_ends_.assign(1, 1);
+	for (int ring = 0; ring < rings; ++ring)
+		collect_ring();
+}
+
+void Patch::collect_ring()
+{
+	// Locals, since the compiler cannot know that what is written is not one of the members.
+	const Index stamp = stamp_;
+	Index* const face_stamps = face_stamps_.data();
+	Index* const vertex_stamps = vertex_stamps_.data();
+	Index* const collected = collected_.data();
+	Index* const met = met_.data();
+	const Face* const faces = faces_.data();
+	const FaceBlock* const first_blocks = first_blocks_.data();
+	const Index* const further_offsets = further_offsets_.data();
+	// Whether a vertex or face is new is anybody's guess, so no branch depends on it: each is
+	// written down, and kept by counting it.
+	const std::size_t begin = ring_ends_.size() > 1 ? ring_ends_[ring_ends_.size() - 2] : 0;
+	const std::size_t end = ring_ends_.back();
+	std::size_t met_count = 0;
+	for (std::size_t i = begin; i < end; ++i) {
+		for (const Index vertex : faces[collected[i]]) {
+			met[met_count] = vertex;
+			met_count += static_cast<std::size_t>(vertex_stamps[vertex] != stamp);
+			vertex_stamps[vertex] = stamp;
+		}
+	}
+	std::size_t count = end;
+	const auto take = [&](const FaceBlock& block) {
+		for (const Index face : block) {
+			collected[count] = face;
+			count += static_cast<std::size_t>(face_stamps[face] != stamp);
+			face_stamps[face] = stamp;
+		}
+	};
+	for (std::size_t i = 0; i < met_count; ++i) {
+		const Index vertex = met[i];
+		take(first_blocks[vertex]);
+		for (Index k = further_offsets[vertex]; k < further_offsets[vertex + 1]; ++k)
+			take(further_blocks_[at(k)]);
+	}
+	ring_ends_.push_back(count);
 }
 
 } // namespace orthopoly

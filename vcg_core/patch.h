@@ -4,6 +4,8 @@
 #include "adjacency.h"
 #include "workspace.h"
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 namespace orthopoly {
@@ -30,10 +32,21 @@ public:
 	const std::vector<Index>& mesh_vertices() const { return mesh_vertices_; }
 	/// Faces, by the patch's numbers of their vertices.
 	const std::vector<Face>& faces() const { return faces_; }
-	/// The patch's faces around its vertices; for vertices on its rim, not all that the mesh has.
-	const IndexLists& vertex_faces() const { return vertex_faces_; }
+
+	/// Collects as many rings around an own face, which is ring 0; no more than the patch was built
+	/// with. As RingCollector does.
+	void collect(Index face, int rings);
+	/// What was collected last, nearest rings first, until the next time.
+	IndexSpan collected() const { return {collected_.data(), ring_ends_.back()}; }
+	/// How many of them lie within a ring.
+	std::size_t count_within(int ring) const { return ring_ends_[static_cast<std::size_t>(ring)]; }
 
 private:
+	/// Faces around a vertex: all but few have no more, and lists of one length are gone through
+	/// without a guess where they end.
+	static constexpr std::size_t FACES_AT_ONCE = 8;
+	using FaceBlock = std::array<Index, FACES_AT_ONCE>;
+
 	/// The patch's number for each number of the mesh that was given one: a hash table with open
 	/// addresses.
 	class Numbers {
@@ -54,14 +67,31 @@ private:
 	};
 
 	void add_face(const Workspace& workspace, Index mesh_face, bool with_surroundings);
+	void link_faces();
+	void collect_ring();
 
 	Index own_faces_ = 0;
 	std::vector<Index> mesh_faces_;
 	std::vector<Index> mesh_vertices_;
 	std::vector<Face> faces_;
-	IndexLists vertex_faces_;
+	/// The first faces around every vertex, those after them in `further_blocks_`; filled up with
+	/// the number of no face, faces_.size().
+	std::vector<FaceBlock> first_blocks_;
+	std::vector<FaceBlock> further_blocks_;
+	/// Where those of a vertex begin and end: in most cases, in the same place.
+	std::vector<Index> further_offsets_;
 	Numbers face_numbers_;
 	Numbers vertex_numbers_;
+
+	/// The collection a face or a vertex was last reached in; no face always counts as reached.
+	Index stamp_ = 0;
+	std::vector<Index> face_stamps_;
+	std::vector<Index> vertex_stamps_;
+	/// Larger than what it holds, which ring_ends_ says.
+	std::vector<Index> collected_;
+	std::vector<std::size_t> ring_ends_;
+	/// Vertices met in the ring collected last.
+	std::vector<Index> met_;
 };
 
 } // namespace orthopoly

@@ -34,9 +34,18 @@ public:
 		if (!(weight_ > 0))
 			return;
 		const Eigen::Matrix2d covariance = squares_ - sum_ * sum_.transpose() / weight_;
-		const double angle =
-			0.5 * std::atan2(2 * covariance(0, 1), covariance(0, 0) - covariance(1, 1));
-		tangent_ = std::cos(angle) * tangent_ + std::sin(angle) * bitangent_;
+		// The angle to turn by is half that of (a, b); by half-angle formulas, on the side where
+		// they lose no digits.
+		const double a = covariance(0, 0) - covariance(1, 1);
+		const double b = 2 * covariance(0, 1);
+		const double length = std::sqrt(a * a + b * b);
+		if (!(length > 0))
+			return;
+		const double larger = std::sqrt(0.5 * (1 + std::abs(a) / length));
+		const double smaller = 0.5 * std::abs(b) / (length * larger);
+		const double cosine = a > 0 ? larger : smaller;
+		const double sine = std::copysign(a > 0 ? smaller : larger, b);
+		tangent_ = cosine * tangent_ + sine * bitangent_;
 		bitangent_ = normal_.cross(tangent_);
 	}
 

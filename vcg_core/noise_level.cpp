@@ -13,12 +13,12 @@ namespace orthopoly {
 namespace {
 
 // The share of the residual variances that is taken as free of features, which only ever add to
-// them.
-constexpr double QUANTILE = 0.35;
+// them: low for coarse meshes with few flat places, but not so low that it is ruled by the tail of
+// noise that is not Gaussian, or misses outliers.
+constexpr double QUANTILE = 0.2;
 
-// Root of that quantile of chi-square over nine degrees of freedom (a 2-ring of 19 vertices), over
-// its mean.
-constexpr double QUANTILE_RATIO = 0.89;
+// The same quantile of the normal distribution.
+constexpr double NORMAL_QUANTILE = -0.8416;
 
 // The quantile of so many variances is steady to about one per cent.
 constexpr Index SAMPLES = 20000;
@@ -30,6 +30,53 @@ constexpr Index GRAIN = 64;
 
 // Rings of vertices of a polynomial.
 constexpr int RINGS = 2;
+
+// How noise across the normals lengthens edges, per square of it in edge lengths: an edge takes
+// half of the noise of both ends across itself, 2 / 2, and a little more in the next order.
+constexpr double LENGTHENING = 1.2;
+
+// The quantile of the mean of squares over so many degrees of freedom, for noise of variance one
+// (Wilson and Hilferty 1931).
+double quantile_of_variance(double free)
+{
+	const double spread = 2 / (9 * free);
+	return std::pow(1 - spread + NORMAL_QUANTILE * std::sqrt(spread), 3);
+}
+
+// The mean edge length of the surface below the noise, whose deviation along the normals is given
+// in the caller's length unit.
+//
+// Smoothing takes the noise out of the edges, but evens irregular triangles out and shortens the
+// mean so. The noisy edges without their part along the normals keep the irregularity, and the
+// noise across the normals, if there is any, lengthens them. Both err to one side then, if the
+// latter are shortened by what noise in all directions would lengthen them.
+double clean_edge_length(
+	const Workspace& workspace,
+	const std::vector<Point>& noisy,
+	const std::vector<Point>& smooth,
+	double sigma)
+{
+	std::vector<Point> normals(noisy.size(), Point::Zero());
+	for (const Face& face : workspace.mesh.faces) {
+		const Point cross = face_cross_product(smooth, face);
+		for (const Index corner : face)
+			normals[static_cast<std::size_t>(corner)] += cross;
+	}
+	std::vector<Point> flattened = noisy;
+	for (std::size_t i = 0; i < noisy.size(); ++i) {
+		const double square = normals[i].squaredNorm();
+		if (square > 0)
+			flattened[i] += (smooth[i] - noisy[i]).dot(normals[i]) / square * normals[i];
+	}
+	const double smoothed = mean_edge_length(smooth, workspace.mesh.faces);
+	if (!(smoothed > 0))
+		return 0;
+	const double relative = sigma / smoothed;
+	return std::max(
+		smoothed,
+		mean_edge_length(flattened, workspace.mesh.faces) /
+			(1 + LENGTHENING * relative * relative));
+}
 
 } // namespace
 
@@ -47,15 +94,17 @@ double estimate_noise_level(const Workspace& workspace, const std::vector<Point>
 			LocalHeights& local = heights[static_cast<std::size_t>(worker)];
 			for (Index i = begin; i < end; ++i) {
 				const auto at = static_cast<std::size_t>(i);
-				variances[at] = local.fit(sample[at], RINGS) ? local.variance() : -1;
+				variances[at] = local.fit(sample[at], RINGS) ?
+									local.variance() / quantile_of_variance(local.free()) :
+									-1;
 			}
 		});
 	variances.erase(
 		std::remove_if(variances.begin(), variances.end(), [](double v) { return v < 0; }),
 		variances.end());
-	// Noise lengthens the edges: those of the smoothed mesh are closer to the true ones.
-	const double length = mean_edge_length(smooth, workspace.mesh.faces);
-	return length > 0 ? std::sqrt(quantile(variances, QUANTILE)) / (QUANTILE_RATIO * length) : 0;
+	const double sigma = std::sqrt(quantile(variances, QUANTILE));
+	const double length = clean_edge_length(workspace, positions, smooth, sigma);
+	return length > 0 ? sigma / length : 0;
 }
 
 } // namespace orthopoly

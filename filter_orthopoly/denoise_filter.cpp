@@ -144,7 +144,7 @@ std::string DenoiseFilter::info() const
 		   "move; faces stay as they are.<br>"
 		   "Apply it as it is: the method <b>adaptive</b> estimates the noise and chooses everything "
 		   "else from the mesh. Where detail is lost, set the strength to gentle; where noise is left, "
-		   "to strong; for the ripples of a depth camera set the kind of noise to scanner. The method "
+		   "to strong; where ripples over several edges are left, set the kind of noise to scanner. The method "
 		   "<b>paper</b> is the published one: face normals are filtered by discrete orthogonal "
 		   "polynomials fitted to non-local similar structures, and the vertices follow.<br>"
 		   "If you have the true shape in another layer, compare with it: faces are coloured by the "

@@ -56,36 +56,6 @@ void check_same_but_for_rare_choices(const Difference& found)
 	CHECK(found.largest < 0.25);
 }
 
-// Noise as a scanner leaves it: white noise smoothed over the surface, made as strong as before.
-TriangleMesh with_correlated_noise(const TriangleMesh& truth, double sigma)
-{
-	const StepFixture f(truth);
-	const double edge = f.workspace.mean_edge_length;
-	std::vector<Point> offsets = noisy(truth, 1).positions;
-	for (std::size_t i = 0; i < offsets.size(); ++i)
-		offsets[i] -= truth.positions[i];
-	for (int step = 0; step < 4; ++step) {
-		std::vector<Point> mean(offsets.size(), Point::Zero());
-		for (Index i = 0; i < truth.vertex_count(); ++i) {
-			const IndexLists& around = f.workspace.vertex_faces;
-			for (const Index* it = around.begin(i); it != around.end(i); ++it) {
-				for (const Index corner : truth.faces[static_cast<std::size_t>(*it)])
-					mean[static_cast<std::size_t>(i)] +=
-						offsets[static_cast<std::size_t>(corner)] / (3.0 * around.size(i));
-			}
-		}
-		offsets.swap(mean);
-	}
-	double square = 0;
-	for (const Point& offset : offsets)
-		square += offset.squaredNorm();
-	const double factor = sigma * edge / std::sqrt(square / static_cast<double>(offsets.size()));
-	TriangleMesh mesh = truth;
-	for (std::size_t i = 0; i < offsets.size(); ++i)
-		mesh.positions[i] += factor * offsets[i];
-	return mesh;
-}
-
 // Two noisy sheets that face away from each other, some squares apart.
 TriangleMesh two_sheets(double apart)
 {
@@ -322,7 +292,31 @@ TEST_CASE("Scanner noise is for the scanner mode", "[adaptive_method][slow]")
 		CHECK(scanner < 0.6 * before);
 		CHECK(scanner < 0.9 * white);
 		CHECK(result.resolved.structure_ring > run(mesh).resolved.structure_ring);
+		CHECK(result.resolved.noise_type == NoiseType::Scanner);
+		// Nothing tells the noise of a closed model from its detail.
+		CHECK(run(mesh).resolved.noise_type == NoiseType::White);
 	}
+}
+
+TEST_CASE("Single views of a depth camera are found and treated as such", "[adaptive_method]")
+{
+	TriangleMesh truth = make_flat_grid(60);
+	for (Point& p : truth.positions)
+		p.z() = 0.25 * std::exp(-((p - Point(0.5, 0.4, 0)).squaredNorm()) / 0.05);
+	const auto angle_after = [&](const TriangleMesh& mesh, NoiseType type) {
+		DenoiseOptions options;
+		options.threads = 1;
+		options.noise_type = type;
+		const DenoiseResult result = denoised(mesh, options);
+		return measure(with_positions(mesh, result.positions), truth).mean_angle;
+	};
+	const TriangleMesh rippled = with_correlated_noise(truth, 0.3, 2);
+	CHECK(run(rippled).resolved.noise_type == NoiseType::Scanner);
+	CHECK(
+		angle_after(rippled, NoiseType::Automatic) < 0.8 * angle_after(rippled, NoiseType::White));
+	const TriangleMesh white = noisy(truth, 0.3);
+	CHECK(run(white).resolved.noise_type == NoiseType::White);
+	CHECK(angle_after(white, NoiseType::Automatic) == angle_after(white, NoiseType::White));
 }
 
 TEST_CASE("A clean mesh stays as it is", "[adaptive_method]")

@@ -5,6 +5,7 @@
 #include "step_fixture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -55,5 +56,36 @@ struct Renumbered {
 		return result;
 	}
 };
+
+/// Noise as a scanner leaves it: white noise smoothed over the surface, made as strong as before.
+inline TriangleMesh
+with_correlated_noise(const TriangleMesh& truth, double sigma, int smoothing_steps = 4)
+{
+	const StepFixture f(truth);
+	const double edge = f.workspace.mean_edge_length;
+	std::vector<Point> offsets = noisy(truth, 1).positions;
+	for (std::size_t i = 0; i < offsets.size(); ++i)
+		offsets[i] -= truth.positions[i];
+	for (int step = 0; step < smoothing_steps; ++step) {
+		std::vector<Point> mean(offsets.size(), Point::Zero());
+		for (Index i = 0; i < truth.vertex_count(); ++i) {
+			const IndexLists& around = f.workspace.vertex_faces;
+			for (const Index* it = around.begin(i); it != around.end(i); ++it) {
+				for (const Index corner : truth.faces[static_cast<std::size_t>(*it)])
+					mean[static_cast<std::size_t>(i)] +=
+						offsets[static_cast<std::size_t>(corner)] / (3.0 * around.size(i));
+			}
+		}
+		offsets.swap(mean);
+	}
+	double square = 0;
+	for (const Point& offset : offsets)
+		square += offset.squaredNorm();
+	const double factor = sigma * edge / std::sqrt(square / static_cast<double>(offsets.size()));
+	TriangleMesh mesh = truth;
+	for (std::size_t i = 0; i < offsets.size(); ++i)
+		mesh.positions[i] += factor * offsets[i];
+	return mesh;
+}
 
 } // namespace orthopoly

@@ -3,6 +3,7 @@
 
 #include "ambiguity.h"
 #include "height_filter.h"
+#include "noise_correlation.h"
 #include "noise_level.h"
 #include "normal_filter.h"
 #include "prefilter.h"
@@ -71,7 +72,8 @@ constexpr double EDGE_PER_ROOT_AREA = 1.52;
 
 // Noise correlated over several edges: smoothing that reaches beyond the correlation, wide
 // structures of one size, and a selection that allows for each independent value being shared by
-// some twenty faces.
+// some twenty faces. Heights are no better known than normals then. Where it is not certain that
+// the noise is of that kind, everything lies between.
 constexpr double SCANNER_PAIRS = 10;
 constexpr int SCANNER_RINGS = 6;
 constexpr int SCANNER_VERTEX_ITERATIONS = 60;
@@ -113,7 +115,8 @@ Rings rings_for(double noise)
 
 // Everything an iteration goes by.
 struct Plan {
-	bool scanner = false;
+	/// How far the noise is taken as correlated, 0 to 1.
+	double correlation = 0;
 	/// In mean edge lengths, strength included.
 	double noise = 0;
 	double prefilter_pairs = 0;
@@ -136,25 +139,34 @@ double strength_factor(Strength strength)
 	return 1;
 }
 
-Plan plan_for(const DenoiseOptions& options, double noise)
+double between(double white, double scanner, double correlation)
+{
+	return (1 - correlation) * white + correlation * scanner;
+}
+
+int between(int white, int scanner, double correlation)
+{
+	return static_cast<int>(std::lround(
+		between(static_cast<double>(white), static_cast<double>(scanner), correlation)));
+}
+
+Plan plan_for(const DenoiseOptions& options, double noise, double correlation)
 {
 	Plan plan;
 	plan.noise = noise;
-	plan.scanner = options.noise_type == NoiseType::Scanner;
-	if (plan.scanner) {
-		plan.prefilter_pairs = SCANNER_PAIRS * strength_factor(options.strength);
-		plan.vertex_iterations = SCANNER_VERTEX_ITERATIONS;
-		plan.cos_threshold = SCANNER_THRESHOLD;
-		plan.selection = SCANNER_SELECTION;
-		plan.rings = {SCANNER_RINGS, SCANNER_RINGS};
-	}
-	else {
-		const double faded = (noise - PREFILTER_FROM) / (PREFILTER_FULL - PREFILTER_FROM);
-		plan.prefilter_pairs = std::min(1.0, std::max(0.0, faded)) *
+	plan.correlation = correlation;
+	const double faded = (noise - PREFILTER_FROM) / (PREFILTER_FULL - PREFILTER_FROM);
+	const double white_pairs = std::min(1.0, std::max(0.0, faded)) *
 							   (PREFILTER_BASE_PAIRS + PREFILTER_PAIRS_PER_NOISE * noise);
-		plan.cos_threshold = cos_threshold_for(noise);
-		plan.rings = rings_for(noise);
-	}
+	plan.prefilter_pairs =
+		between(white_pairs, SCANNER_PAIRS * strength_factor(options.strength), correlation);
+	plan.vertex_iterations = between(VERTEX_ITERATIONS, SCANNER_VERTEX_ITERATIONS, correlation);
+	plan.cos_threshold = between(cos_threshold_for(noise), SCANNER_THRESHOLD, correlation);
+	// A ratio of variances, hence by its logarithm.
+	plan.selection = SELECTION * std::pow(SCANNER_SELECTION / SELECTION, correlation);
+	const Rings rings = rings_for(noise);
+	plan.rings.smallest = between(rings.smallest, SCANNER_RINGS, correlation);
+	plan.rings.largest = between(rings.largest, SCANNER_RINGS, correlation);
 	if (options.structure_ring) {
 		plan.rings.largest = *options.structure_ring;
 		plan.rings.smallest = std::min(plan.rings.smallest, plan.rings.largest);
@@ -213,7 +225,7 @@ public:
 		for (int iteration = 0; iteration < plan_.iterations; ++iteration) {
 			const FaceGeometry current = face_geometry(workspace_, positions_);
 			std::vector<Point> normals = filter(original, current, iteration);
-			if (iteration + 1 == plan_.iterations && !plan_.scanner)
+			if (iteration + 1 == plan_.iterations && plan_.correlation < 1)
 				refine(current, normals);
 			begin_phase(iteration, 0.8, 1.0, "moving vertices");
 			VertexUpdateOptions update;
@@ -241,9 +253,9 @@ private:
 	// further than this. Measured from the prefiltered positions, so that outliers do come back.
 	void bound_drift(const std::vector<Point>& start)
 	{
-		if (plan_.scanner)
+		if (plan_.correlation == 1)
 			return;
-		const double bound = DRIFT_BOUND * sigma_;
+		const double bound = DRIFT_BOUND * sigma_ / (1 - plan_.correlation);
 		for (std::size_t i = 0; i < positions_.size(); ++i) {
 			const Point drift = positions_[i] - start[i];
 			const double length = drift.norm();
@@ -258,7 +270,7 @@ private:
 			return;
 		workspace_.execution.begin_phase(0.1, 0.15, "unfolding faces");
 		taubin_smooth(workspace_, plan_.prefilter_pairs, positions_);
-		if (!plan_.scanner)
+		if (plan_.correlation < 1)
 			taubin_smooth(
 				workspace_,
 				UNFOLDING_PAIRS,
@@ -299,7 +311,7 @@ private:
 			const double edge = EDGE_PER_ROOT_AREA * std::sqrt(local.mean_area);
 			const double doubt =
 				local.ambiguity * sigma_ / (AMBIGUITY_LIMIT * AMBIGUITY_NOISE * edge);
-			const double share = std::min(1.0, doubt);
+			const double share = std::max(plan_.correlation, std::min(1.0, doubt));
 			const Point blend = share * normals[i] + (1 - share) * refined[i];
 			const double length = blend.norm();
 			if (length > 0)
@@ -326,9 +338,13 @@ void run_adaptive_method(
 	result.estimated_noise = estimate_noise_level(workspace, workspace.mesh.positions);
 	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
 	const double noise = *result.resolved.noise_level * strength_factor(options.strength);
-	const Plan plan = plan_for(options, noise);
+	double correlation = options.noise_type == NoiseType::Scanner ? 1 : 0;
+	if (options.noise_type == NoiseType::Automatic && noise >= LEAST_NOISE)
+		correlation = measure_noise_correlation(workspace, workspace.mesh.positions).certainty();
+	result.resolved.noise_type = correlation > 0.5 ? NoiseType::Scanner : NoiseType::White;
+	const Plan plan = plan_for(options, noise, correlation);
 	record(plan, result.resolved);
-	if (!plan.scanner && noise < LEAST_NOISE) {
+	if (options.noise_type != NoiseType::Scanner && noise < LEAST_NOISE) {
 		result.status = DenoiseResult::Status::NothingToDo;
 		return;
 	}

@@ -18,6 +18,8 @@ enum class Method {
 
 /// What the noise of neighbouring vertices has to do with each other.
 enum class NoiseType {
+	/// Read off the mesh; as White wherever it is not clear.
+	Automatic,
 	/// Nothing: independent from vertex to vertex.
 	White,
 	/// Correlated over several edges, as depth cameras and structured-light scanners leave it.
@@ -33,7 +35,8 @@ struct DenoiseOptions {
 	Method method = Method::Adaptive;
 	/// Adaptive: half, once or twice the estimated noise level.
 	Strength strength = Strength::Normal;
-	NoiseType noise_type = NoiseType::White;
+	/// The result says which of the two it was taken for; in between, which it was closer to.
+	NoiseType noise_type = NoiseType::Automatic;
 	/// Adaptive: standard deviation of the noise along the normal, in mean edge lengths, before
 	/// `strength` is applied to it.
 	std::optional<double> noise_level;

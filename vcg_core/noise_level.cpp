@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "noise_level.h"
 
+#include "local_heights.h"
 #include "prefilter.h"
 #include "sampling.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -13,20 +12,13 @@ namespace orthopoly {
 
 namespace {
 
-// Terms of a cubic polynomial in two variables: the lowest degree that takes ordinary curvature and
-// its change out of the residual.
-constexpr int TERMS = 10;
-
-// Fewer degrees of freedom than this make a residual variance mean little.
-constexpr std::size_t FEWEST_FREE = 4;
-
 // The share of the residual variances that is taken as free of features, which only ever add to
-// them.
-constexpr double QUANTILE = 0.35;
+// them: low for coarse meshes with few flat places, but not so low that it is ruled by the tail of
+// noise that is not Gaussian, or misses outliers.
+constexpr double QUANTILE = 0.2;
 
-// Root of that quantile of chi-square over nine degrees of freedom (a 2-ring of 19 vertices), over
-// its mean.
-constexpr double QUANTILE_RATIO = 0.89;
+// The same quantile of the normal distribution.
+constexpr double NORMAL_QUANTILE = -0.8416;
 
 // The quantile of so many variances is steady to about one per cent.
 constexpr Index SAMPLES = 20000;
@@ -36,116 +28,83 @@ constexpr double SMOOTHING_PAIRS = 4;
 
 constexpr Index GRAIN = 64;
 
-using Terms = Eigen::Matrix<double, TERMS, 1>;
-using Gram = Eigen::Matrix<double, TERMS, TERMS>;
+// Rings of vertices of a polynomial.
+constexpr int RINGS = 2;
 
-// Appends the vertices that share a face with one.
-void append_neighbors(const Workspace& workspace, Index vertex, std::vector<Index>& ring)
+// How noise across the normals lengthens edges, per square of it in edge lengths: an edge takes
+// half of the noise of both ends across itself, 2 / 2, and a little more in the next order.
+constexpr double LENGTHENING = 1.2;
+
+// The quantile of the mean of squares over so many degrees of freedom, for noise of variance one
+// (Wilson and Hilferty 1931).
+double quantile_of_variance(double free)
 {
-	const IndexLists& around = workspace.vertex_faces;
-	for (const Index* it = around.begin(vertex); it != around.end(vertex); ++it) {
-		for (const Index neighbor : workspace.mesh.faces[static_cast<std::size_t>(*it)]) {
-			if (std::find(ring.begin(), ring.end(), neighbor) == ring.end())
-				ring.push_back(neighbor);
-		}
-	}
+	const double spread = 2 / (9 * free);
+	return std::pow(1 - spread + NORMAL_QUANTILE * std::sqrt(spread), 3);
 }
 
-/// The mesh as given, and smoothed.
-struct Surfaces {
-	const std::vector<Point>& noisy;
-	/// Gives the normals and where in the plane across them a vertex lies: read off the noisy
-	/// mesh, both would hide a part of strong noise from the residual.
-	const std::vector<Point>& smooth;
-};
-
-// Residual variance of a cubic height polynomial over the 2-ring of a vertex; negative where there
-// is none.
-double residual_variance(
-	const Workspace& workspace, const Surfaces& surfaces, Index vertex, std::vector<Index>& ring)
+// The mean edge length of the surface below the noise, whose deviation along the normals is given
+// in the caller's length unit.
+//
+// Smoothing takes the noise out of the edges, but evens irregular triangles out and shortens the
+// mean so. The noisy edges without their part along the normals keep the irregularity, and the
+// noise across the normals, if there is any, lengthens them. Both err to one side then, if the
+// latter are shortened by what noise in all directions would lengthen them.
+double clean_edge_length(
+	const Workspace& workspace,
+	const std::vector<Point>& noisy,
+	const std::vector<Point>& smooth,
+	double sigma)
 {
-	Point normal = Point::Zero();
-	const IndexLists& around = workspace.vertex_faces;
-	for (const Index* it = around.begin(vertex); it != around.end(vertex); ++it)
-		normal += face_cross_product(
-			surfaces.smooth, workspace.mesh.faces[static_cast<std::size_t>(*it)]);
-	ring.assign(1, vertex);
-	append_neighbors(workspace, vertex, ring);
-	const std::size_t first_ring = ring.size();
-	for (std::size_t i = 1; i < first_ring; ++i)
-		append_neighbors(workspace, ring[i], ring);
-	const double length = normal.norm();
-	if (ring.size() < TERMS + FEWEST_FREE || !(length > 0))
-		return -1;
-	normal /= length;
-	const Point tangent = normal.unitOrthogonal();
-	const Point bitangent = normal.cross(tangent);
-
-	const Point& center = surfaces.smooth[static_cast<std::size_t>(vertex)];
-	double extent = 0;
-	for (const Index i : ring)
-		extent =
-			std::max(extent, (surfaces.smooth[static_cast<std::size_t>(i)] - center).squaredNorm());
-	if (!(extent > 0))
-		return -1;
-	const double scale = 1.0 / std::sqrt(extent);
-	Gram gram = Gram::Zero();
-	Terms moments = Terms::Zero();
-	double energy = 0;
-	for (const Index i : ring) {
-		const auto at = static_cast<std::size_t>(i);
-		const Point node = scale * (surfaces.smooth[at] - center);
-		const double x = node.dot(tangent);
-		const double y = node.dot(bitangent);
-		const double height = scale * (surfaces.noisy[at] - center).dot(normal);
-		Terms terms;
-		terms << 1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y;
-		gram.selfadjointView<Eigen::Lower>().rankUpdate(terms);
-		moments += height * terms;
-		energy += height * height;
+	std::vector<Point> normals(noisy.size(), Point::Zero());
+	for (const Face& face : workspace.mesh.faces) {
+		const Point cross = face_cross_product(smooth, face);
+		for (const Index corner : face)
+			normals[static_cast<std::size_t>(corner)] += cross;
 	}
-	const Eigen::LLT<Gram> cholesky(gram);
-	// Nodes on a line, or on a conic's worth of coincidences, do not fix a cubic.
-	if (cholesky.info() != Eigen::Success || !(cholesky.rcond() > 1e-10))
-		return -1;
-	const Terms coefficients = cholesky.matrixL().solve(moments);
-	const double residual = std::max(0.0, energy - coefficients.squaredNorm());
-	return residual / (scale * scale * static_cast<double>(ring.size() - TERMS));
+	std::vector<Point> flattened = noisy;
+	for (std::size_t i = 0; i < noisy.size(); ++i) {
+		const double square = normals[i].squaredNorm();
+		if (square > 0)
+			flattened[i] += (smooth[i] - noisy[i]).dot(normals[i]) / square * normals[i];
+	}
+	const double smoothed = mean_edge_length(workspace, smooth);
+	if (!(smoothed > 0))
+		return 0;
+	const double relative = sigma / smoothed;
+	return std::max(
+		smoothed,
+		mean_edge_length(workspace, flattened) /
+			(1 + LENGTHENING * relative * relative));
 }
 
 } // namespace
 
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions)
 {
-	const Index vertex_count = workspace.mesh.vertex_count();
-	std::vector<double> areas(static_cast<std::size_t>(vertex_count), 0.0);
-	for (Index i = 0; i < vertex_count; ++i) {
-		const IndexLists& around = workspace.vertex_faces;
-		for (const Index* it = around.begin(i); it != around.end(i); ++it)
-			areas[static_cast<std::size_t>(i)] +=
-				face_cross_product(positions, workspace.mesh.faces[static_cast<std::size_t>(*it)])
-					.norm();
-	}
 	std::vector<Point> smooth = positions;
 	taubin_smooth(workspace, SMOOTHING_PAIRS, smooth);
-	const Surfaces surfaces {positions, smooth};
-	const std::vector<Index> sample = sample_by_value(areas, SAMPLES);
+	const std::vector<Index> sample = sample_by_value(areas_around(workspace, positions), SAMPLES);
 	std::vector<double> variances(sample.size());
-	std::vector<std::vector<Index>> rings(static_cast<std::size_t>(workspace.execution.threads()));
+	std::vector<LocalHeights> heights(
+		static_cast<std::size_t>(workspace.execution.threads()),
+		LocalHeights(workspace, positions, smooth));
 	workspace.execution.parallel_for(
 		static_cast<Index>(sample.size()), GRAIN, [&](Index begin, Index end, int worker) {
+			LocalHeights& local = heights[static_cast<std::size_t>(worker)];
 			for (Index i = begin; i < end; ++i) {
 				const auto at = static_cast<std::size_t>(i);
-				variances[at] = residual_variance(
-					workspace, surfaces, sample[at], rings[static_cast<std::size_t>(worker)]);
+				variances[at] = local.fit(sample[at], RINGS) ?
+									local.variance() / quantile_of_variance(local.free()) :
+									-1;
 			}
 		});
 	variances.erase(
 		std::remove_if(variances.begin(), variances.end(), [](double v) { return v < 0; }),
 		variances.end());
-	// Noise lengthens the edges: those of the smoothed mesh are closer to the true ones.
-	const double length = mean_edge_length(workspace, smooth);
-	return length > 0 ? std::sqrt(quantile(variances, QUANTILE)) / (QUANTILE_RATIO * length) : 0;
+	const double sigma = std::sqrt(quantile(variances, QUANTILE));
+	const double length = clean_edge_length(workspace, positions, smooth, sigma);
+	return length > 0 ? sigma / length : 0;
 }
 
 } // namespace orthopoly

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "noise_correlation.h"
+
+#include "method_support.h"
+#include "recipes.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+using namespace orthopoly;
+
+namespace {
+
+NoiseCorrelation measured(const TriangleMesh& mesh, int threads = 1)
+{
+	const StepFixture f(mesh, threads);
+	return measure_noise_correlation(f.workspace, mesh.positions);
+}
+
+// What a depth camera sees of a hill on a plain, without its noise: a regular grid from above.
+TriangleMesh depth_image(int n = 60)
+{
+	TriangleMesh mesh = make_flat_grid(n);
+	for (Point& p : mesh.positions)
+		p.z() = 0.25 * std::exp(-((p - Point(0.5, 0.4, 0)).squaredNorm()) / 0.05);
+	return mesh;
+}
+
+} // namespace
+
+TEST_CASE("White noise is not taken for correlated, on any surface", "[noise_correlation][slow]")
+{
+	const auto direction =
+		GENERATE(NoiseDirection::Normal, NoiseDirection::Random, NoiseDirection::Isotropic);
+	for (const std::string name :
+		 {"cube", "sphere", "torus", "part", "height_field", "thin_plate"}) {
+		for (const double sigma : {0.05, 0.2, 0.6}) {
+			CAPTURE(name, static_cast<int>(direction), sigma);
+			const TriangleMesh mesh = noisy(find_recipe(name).make(4000), sigma, direction);
+			CHECK(measured(mesh).certainty() == 0);
+		}
+	}
+	for (const double sigma : {0.05, 0.2, 0.6}) {
+		CAPTURE(sigma);
+		const NoiseCorrelation found = measured(noisy(depth_image(), sigma, direction));
+		CHECK(found.certainty() == 0);
+		CHECK(std::abs(found.edge_correlation) < 0.09);
+	}
+}
+
+TEST_CASE("Outliers are not taken for correlated noise", "[noise_correlation]")
+{
+	NoiseOptions options;
+	options.impulsive_share = 0.3;
+	for (const double sigma : {0.1, 0.4}) {
+		TriangleMesh mesh = depth_image();
+		options.sigma = sigma;
+		mesh.positions = add_noise(mesh, options);
+		CHECK(measured(mesh).certainty() == 0);
+	}
+}
+
+TEST_CASE("The noise of a depth camera is found", "[noise_correlation]")
+{
+	for (const double sigma : {0.3, 0.4}) {
+		CAPTURE(sigma);
+		const NoiseCorrelation found = measured(with_correlated_noise(depth_image(), sigma, 2));
+		CHECK(found.certainty() > 0.6);
+		CHECK(found.edge_correlation > 0.2);
+		CHECK(found.growth < 2);
+		CHECK(found.unevenness < 1.5);
+		// The longest waves are taken for the surface.
+		CHECK(found.level > 0.5 * sigma);
+		CHECK(found.level < sigma);
+	}
+}
+
+TEST_CASE("Only a single view can be a depth camera's", "[noise_correlation]")
+{
+	for (const std::string name : {"cube", "sphere", "torus"}) {
+		CAPTURE(name);
+		const NoiseCorrelation found =
+			measured(with_correlated_noise(find_recipe(name).make(4000), 0.4));
+		CHECK(found.view_irregularity > 0.99);
+		CHECK(found.certainty() == 0);
+	}
+	CHECK(measured(depth_image()).view_irregularity < 1e-6);
+	CHECK(measured(make_height_field(8000)).view_irregularity < 0.25);
+}
+
+TEST_CASE("Noise along the view does not hide it", "[noise_correlation]")
+{
+	TriangleMesh mesh = depth_image();
+	const TriangleMesh strong = noisy(mesh, 1.0);
+	for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+		mesh.positions[i].z() += (strong.positions[i] - mesh.positions[i]).norm();
+	CHECK(measured(mesh).view_irregularity < 1e-6);
+}
+
+TEST_CASE("Rough ground is not taken for noise", "[noise_correlation]")
+{
+	// Waves of several lengths over the whole of it, the longer the higher, a little white noise.
+	TriangleMesh mesh = make_flat_grid(80);
+	for (Point& p : mesh.positions) {
+		for (int wave = 4; wave <= 16; wave *= 2)
+			p.z() += 0.12 / wave * std::sin(2 * M_PI * wave * p.x() + 0.7 * wave) *
+					 std::cos(2 * M_PI * wave * p.y() + 0.3 * wave);
+	}
+	for (const double sigma : {0.02, 0.05, 0.1}) {
+		CAPTURE(sigma);
+		CHECK(measured(noisy(mesh, sigma)).certainty() < 0.1);
+	}
+}
+
+TEST_CASE("Size, place, turn and order do not matter to the kind of noise", "[noise_correlation]")
+{
+	const TriangleMesh mesh = with_correlated_noise(depth_image(), 0.3, 2);
+	const NoiseCorrelation here = measured(mesh);
+	const auto check = [&](const NoiseCorrelation& found) {
+		CHECK(found.view_irregularity == Approx(here.view_irregularity).epsilon(1e-9));
+		CHECK(found.edge_correlation == Approx(here.edge_correlation).epsilon(1e-7));
+		CHECK(found.growth == Approx(here.growth).epsilon(1e-9));
+		CHECK(found.unevenness == Approx(here.unevenness).epsilon(1e-9));
+		CHECK(found.level == Approx(here.level).epsilon(1e-9));
+		CHECK(found.certainty() == Approx(here.certainty()).epsilon(1e-6));
+	};
+	for (const double scale : {1e-3, 1e3}) {
+		const Eigen::Matrix3d rotation = some_rotation();
+		const auto there = [&](const Point& p) { return Point(scale * (rotation * p)); };
+		check(measured(with_positions(mesh, each(mesh.positions, there))));
+	}
+	check(measured(Renumbered(mesh).mesh));
+}
+
+TEST_CASE("A mesh too small to tell is white", "[noise_correlation]")
+{
+	CHECK(measured(unit_square()).certainty() == 0);
+	CHECK(measured(with_correlated_noise(make_flat_grid(4), 0.4)).certainty() == 0);
+	// Nothing is left over on a plane, so there is nothing to judge.
+	CHECK(measured(make_flat_grid(30)).certainty() == 0);
+}
+
+TEST_CASE("The kind of noise is the same on any number of threads", "[noise_correlation][parallel]")
+{
+	const TriangleMesh mesh = with_correlated_noise(depth_image(), 0.3, 2);
+	const NoiseCorrelation one = measured(mesh, 1);
+	for (const int threads : {2, 4}) {
+		const NoiseCorrelation many = measured(mesh, threads);
+		CHECK(many.edge_correlation == one.edge_correlation);
+		CHECK(many.growth == one.growth);
+		CHECK(many.certainty() == one.certainty());
+	}
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "workspace.h"
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace orthopoly {
+
+/// Cubic height polynomials fitted around vertices, one at a time, and what they leave of the
+/// heights: noise where the surface is smooth. Ten terms are the fewest that take ordinary
+/// curvature and its change out of the residual. Keeps scratch memory, so use one object a thread.
+class LocalHeights {
+public:
+	/// @param noisy  #V, gives the heights
+	/// @param smooth #V, gives the normals and where in the plane across them a vertex lies: read
+	/// off the noisy mesh, both would hide a part of strong noise from the residual
+	LocalHeights(
+		const Workspace& workspace,
+		const std::vector<Point>& noisy,
+		const std::vector<Point>& smooth);
+
+	/// Collects the vertices within so many rings of one (over shared faces) and fits. False where
+	/// there is no normal or the nodes leave too little to judge the fit by.
+	bool fit(Index vertex, int rings);
+
+	/// Degrees of freedom of the residual: vertices less terms.
+	double free() const { return static_cast<double>(ring_.size()) - TERMS; }
+	/// Residual variance of the last fit, in the square of the caller's length unit.
+	double variance() const { return residual_.squaredNorm() / free(); }
+	/// Mean product of the residuals of two vertices that share a face over their mean square, less
+	/// what independent noise would give: zero but for chance where the noise is white.
+	double edge_correlation() const;
+
+private:
+	static constexpr int TERMS = 10;
+	using Gram = Eigen::Matrix<double, TERMS, TERMS>;
+
+	void collect(Index vertex, int rings);
+
+	const Workspace& workspace_;
+	const std::vector<Point>& noisy_;
+	const std::vector<Point>& smooth_;
+	/// Place of a vertex in ring_, plus one; zero for those outside.
+	std::vector<Index> places_;
+	std::vector<Index> ring_;
+	/// Terms by vertices of the ring: monomials at the nodes, orthonormal polynomials after a fit.
+	Eigen::Matrix<double, TERMS, Eigen::Dynamic> basis_;
+	Eigen::VectorXd heights_;
+	Eigen::VectorXd residual_;
+};
+
+/// #V sums of the face areas around every vertex, times two: with them `sample_by_value` chooses
+/// the same vertices however they are numbered.
+std::vector<double> areas_around(const Workspace& workspace, const std::vector<Point>& positions);
+
+} // namespace orthopoly

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "noise_correlation.h"
+
+#include "local_heights.h"
+#include "prefilter.h"
+#include "sampling.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace orthopoly {
+
+namespace {
+
+// A factor: 0 up to (or from) one end, 1 from (or up to) the other.
+struct Ramp {
+	double zero;
+	double one;
+
+	double operator()(double value) const
+	{
+		return std::min(1.0, std::max(0.0, (value - zero) / (one - zero)));
+	}
+};
+
+// Irregularity of the view. Depth images in perspective have 0.2, a jittered grid as well; the
+// visible half of a closed model hardly less than 0.4, and mostly 0.6.
+constexpr Ramp ONE_VIEW = {0.40, 0.25};
+
+// Correlation along edges over the flattest places. White noise gives 0.05 by chance and curvature,
+// a depth camera 0.25, white noise smoothed by a few umbrella steps 0.16 to 0.5.
+constexpr Ramp CORRELATED = {0.13, 0.20};
+
+// Residual of wide polynomials over that of narrow ones. Noise correlated over a few edges
+// gives 1.1 to 1.8; waves and edges of the surface itself 2 and far more, but so does smoother
+// noise.
+constexpr Ramp SLOW_GROWTH = {2.2, 1.8};
+
+// What wide polynomials leave at an ordinary place over what they leave in the flattest ones. Where
+// it is much more, structures that wide would take away more of the surface than of the noise.
+constexpr Ramp EVEN = {1.9, 1.5};
+
+// Strength from which correlated noise is worse than the loss of detail in wide structures.
+constexpr Ramp STRONG = {0.10, 0.25};
+
+// Rings of vertices of the narrow and the wide polynomials, and of those whose residuals are
+// correlated: wide enough to leave what is correlated over several edges in the residual.
+constexpr int NARROW_RINGS = 4;
+constexpr int MIDDLE_RINGS = 5;
+constexpr int WIDE_RINGS = 8;
+
+// The share of places that counts as the flattest.
+constexpr double FLATTEST = 0.2;
+
+// So many polynomials reach every place of an ordinary mesh several times.
+constexpr Index SAMPLES = 1500;
+
+// But a mesh that has fewer has no place where the wide ones do not see everything.
+constexpr std::size_t FEWEST_SAMPLES = 100;
+
+// Taubin pairs that give the frame of the heights.
+constexpr double SMOOTHING_PAIRS = 4;
+
+constexpr Index GRAIN = 32;
+
+/// What is measured around a vertex; negative variances where there is no polynomial.
+struct Residuals {
+	double narrow = -1;
+	double middle = -1;
+	double wide = -1;
+	double correlation = 0;
+};
+
+double deviation(LocalHeights& heights, Index vertex, int rings)
+{
+	return heights.fit(vertex, rings) ? std::sqrt(heights.variance()) : -1;
+}
+
+double irregularity_of_view(const std::vector<Point>& positions, const std::vector<Face>& faces)
+{
+	// The view w (direction over mean area) for which the areas a.w of all faces are closest to 1.
+	// The scale keeps the squares of areas within a double's range.
+	const double edge = mean_edge_length(positions, faces);
+	if (!(edge > 0))
+		return 1;
+	Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+	Point sum = Point::Zero();
+	for (const Face& face : faces) {
+		const Point area = face_cross_product(positions, face) / (edge * edge);
+		squares += area * area.transpose();
+		sum += area;
+	}
+	const auto count = static_cast<double>(faces.size());
+	const Point view = squares.completeOrthogonalDecomposition().solve(sum);
+	return std::sqrt(std::max(0.0, 1 - view.dot(sum) / count));
+}
+
+} // namespace
+
+double NoiseCorrelation::certainty() const
+{
+	return ONE_VIEW(view_irregularity) * CORRELATED(edge_correlation) * SLOW_GROWTH(growth) *
+		   EVEN(unevenness) * STRONG(level);
+}
+
+NoiseCorrelation
+measure_noise_correlation(const Workspace& workspace, const std::vector<Point>& positions)
+{
+	NoiseCorrelation result;
+	result.view_irregularity = irregularity_of_view(positions, workspace.mesh.faces);
+	if (ONE_VIEW(result.view_irregularity) == 0)
+		return result;
+	std::vector<Point> smooth = positions;
+	taubin_smooth(workspace, SMOOTHING_PAIRS, smooth);
+	const std::vector<Index> sample = sample_by_value(areas_around(workspace, positions), SAMPLES);
+	std::vector<Residuals> found(sample.size());
+	std::vector<LocalHeights> heights(
+		static_cast<std::size_t>(workspace.execution.threads()),
+		LocalHeights(workspace, positions, smooth));
+	workspace.execution.parallel_for(
+		static_cast<Index>(sample.size()), GRAIN, [&](Index begin, Index end, int worker) {
+			LocalHeights& local = heights[static_cast<std::size_t>(worker)];
+			for (Index k = begin; k < end; ++k) {
+				const Index vertex = sample[static_cast<std::size_t>(k)];
+				Residuals& residuals = found[static_cast<std::size_t>(k)];
+				residuals.narrow = deviation(local, vertex, NARROW_RINGS);
+				residuals.middle = deviation(local, vertex, MIDDLE_RINGS);
+				if (residuals.middle >= 0)
+					residuals.correlation = local.edge_correlation();
+				residuals.wide = deviation(local, vertex, WIDE_RINGS);
+			}
+		});
+	found.erase(
+		std::remove_if(
+			found.begin(),
+			found.end(),
+			[](const Residuals& r) {
+				return std::min({r.narrow, r.middle, r.wide}) < 0;
+			}),
+		found.end());
+	if (found.size() < FEWEST_SAMPLES)
+		return result;
+
+	const auto at_share = [&](double Residuals::*deviation, double share) {
+		std::vector<double> values;
+		values.reserve(found.size());
+		for (const Residuals& residuals : found)
+			values.push_back(residuals.*deviation);
+		return quantile(values, share);
+	};
+	const double narrow = at_share(&Residuals::narrow, FLATTEST);
+	const double middle = at_share(&Residuals::middle, FLATTEST);
+	const double wide = at_share(&Residuals::wide, FLATTEST);
+	double sum = 0;
+	double count = 0;
+	for (const Residuals& residuals : found) {
+		if (residuals.middle <= middle) {
+			sum += residuals.correlation;
+			count += 1;
+		}
+	}
+	result.edge_correlation = sum / count;
+	if (!(narrow > 0 && wide > 0))
+		return result;
+	result.growth = wide / narrow;
+	result.unevenness = at_share(&Residuals::wide, 0.5) / wide;
+	result.level = wide / mean_edge_length(workspace, smooth);
+	return result;
+}
+
+} // namespace orthopoly

@@ -195,12 +195,12 @@ TEST_CASE("A vertex with a face turned over is found", "[prefilter]")
 	const auto count = [](const std::vector<std::uint8_t>& flags) {
 		return std::count(flags.begin(), flags.end(), 1);
 	};
-	CHECK(count(folded_vertices(flat.workspace, flat.mesh.positions, 0.999)) == 0);
+	CHECK(count(folded_vertices(flat.workspace, flat.mesh.positions, {0.999})) == 0);
 
 	// One vertex pulled over its neighbour turns faces over: all of theirs see it.
 	std::vector<Point> positions = flat.mesh.positions;
 	positions[24].x() += 1.2 / 6;
-	const std::vector<std::uint8_t> flags = folded_vertices(flat.workspace, positions, 0.3);
+	const std::vector<std::uint8_t> flags = folded_vertices(flat.workspace, positions, {0.3});
 	for (Index i = 0; i < flat.mesh.vertex_count(); ++i) {
 		bool touches = false;
 		for (const Index* it = flat.workspace.vertex_faces.begin(i);
@@ -217,7 +217,7 @@ TEST_CASE("A vertex with a face turned over is found", "[prefilter]")
 
 TEST_CASE("The cosine of a fold is the one asked for", "[prefilter]")
 {
-	// A roof of two equal sides, each 40 degrees from the mean of both.
+	// A roof of two equal sides, 80 degrees apart.
 	TriangleMesh mesh = unit_square();
 	const double angle = 40 * 3.14159265358979323846 / 180;
 	mesh.positions = {
@@ -227,13 +227,26 @@ TEST_CASE("The cosine of a fold is the one asked for", "[prefilter]")
 		Point(-std::cos(angle), 0, -std::sin(angle))};
 	mesh.faces = {{0, 1, 2}, {0, 2, 3}};
 	const StepFixture f(mesh);
-	for (const double degrees : {39.0, 41.0}) {
+	for (const double degrees : {79.0, 81.0}) {
 		const double cosine = std::cos(degrees * 3.14159265358979323846 / 180);
 		const std::vector<std::uint8_t> flags =
-			folded_vertices(f.workspace, mesh.positions, cosine);
-		// The ridge has both sides, the eaves one each.
-		CHECK(flags == std::vector<std::uint8_t>({degrees < 40, 0, degrees < 40, 0}));
+			folded_vertices(f.workspace, mesh.positions, {cosine});
+		CHECK(flags == std::vector<std::uint8_t>(4, degrees < 80));
 	}
+}
+
+TEST_CASE("Only faces as low as noise can turn them over are folded", "[prefilter]")
+{
+	const StepFixture f(make_flat_grid(6));
+	std::vector<Point> positions = f.mesh.positions;
+	positions[24].x() += 1.2 / 6;
+	// The faces turned over are a fifth of a square high or more, and shrunk by no more than that.
+	CHECK(
+		folded_vertices(f.workspace, positions, {0.3, 0.01 / 6}) ==
+		std::vector<std::uint8_t>(positions.size(), 0));
+	CHECK(
+		folded_vertices(f.workspace, positions, {0.3, 2.0 / 6}) ==
+		folded_vertices(f.workspace, positions, {0.3}));
 }
 
 TEST_CASE("Smoothing where faces are folded unfolds them", "[prefilter]")
@@ -242,7 +255,7 @@ TEST_CASE("Smoothing where faces are folded unfolds them", "[prefilter]")
 	std::vector<Point> positions = f.mesh.positions;
 	const Index before = count_folded_faces(positions, f.workspace);
 	REQUIRE(before > 20);
-	const std::vector<std::uint8_t> flags = folded_vertices(f.workspace, positions, 0.3);
+	const std::vector<std::uint8_t> flags = folded_vertices(f.workspace, positions, {0.3});
 	taubin_smooth(f.workspace, 3, positions, flags);
 	CHECK(count_folded_faces(positions, f.workspace) < before / 4);
 	for (std::size_t i = 0; i < flags.size(); ++i)
@@ -254,10 +267,10 @@ TEST_CASE("The prefilter gives the same on any number of threads", "[prefilter][
 	const TriangleMesh mesh = noisy(make_torus(20000), 0.3, NoiseDirection::Random);
 	const StepFixture one(mesh, 1);
 	const std::vector<Point> expected = smoothed(one, 2.5);
-	const std::vector<std::uint8_t> flags = folded_vertices(one.workspace, mesh.positions, 0.3);
+	const std::vector<std::uint8_t> flags = folded_vertices(one.workspace, mesh.positions, {0.3});
 	for (const int threads : {2, 4}) {
 		const StepFixture several(mesh, threads);
 		CHECK(same_bits(smoothed(several, 2.5), expected));
-		CHECK(folded_vertices(several.workspace, mesh.positions, 0.3) == flags);
+		CHECK(folded_vertices(several.workspace, mesh.positions, {0.3}) == flags);
 	}
 }

@@ -102,6 +102,68 @@ TEST_CASE("Normals of a plane flatten a bumpy one, and nothing else", "[vertex_u
 	}
 }
 
+TEST_CASE("Accelerated steps do as much as twice as many plain ones", "[vertex_update]")
+{
+	const StepFixture f(noisy(make_flat_grid(40), 0.3));
+	const std::vector<Point> up(f.mesh.faces.size(), Point(0, 0, 1));
+	const auto height_after = [&](int steps, bool accelerated) {
+		VertexUpdateOptions options;
+		options.iterations = steps;
+		options.area_weights = true;
+		options.accelerated = accelerated;
+		return root_mean_square_height(updated(f, up, options));
+	};
+	CHECK(height_after(1, true) == Approx(height_after(1, false)).epsilon(0.01));
+	for (const int steps : {8, 10, 20}) {
+		CAPTURE(steps);
+		CHECK(height_after(steps, true) < height_after(2 * steps, false));
+		CHECK(height_after(steps, true) > 0.5 * height_after(4 * steps, false));
+	}
+}
+
+TEST_CASE("A vertex is pulled to its rest only where its normals leave it free", "[vertex_update]")
+{
+	const StepFixture f(noisy(make_flat_grid(20), 0.2));
+	VertexUpdateOptions options;
+	options.area_weights = true;
+	std::vector<Point> rest = f.mesh.positions;
+	// Where all normals agree with the surface nothing is pulled, not even along it.
+	{
+		const StepFixture flat(make_flat_grid(20));
+		const std::vector<Point> aside =
+			each(flat.mesh.positions, [](const Point& p) { return Point(p + Point(0.1, 0, 0)); });
+		options.rest = &aside;
+		const std::vector<Point> up(flat.mesh.faces.size(), Point(0, 0, 1));
+		CHECK(largest_distance(updated(flat, up, options), flat.mesh.positions) < 1e-14);
+	}
+	// Along normals that all agree nothing is pulled, however far off the surface is.
+	const std::vector<Point> up(f.mesh.faces.size(), Point(0, 0, 1));
+	for (Point& p : rest)
+		p.z() += 1;
+	options.rest = nullptr;
+	const std::vector<Point> free = updated(f, up, options);
+	options.rest = &rest;
+	CHECK(largest_distance(updated(f, up, options), free) < 1e-14);
+
+	// Normals that do not agree with each other let vertices slide; a rest holds them.
+	std::vector<Point> wild;
+	for (std::size_t i = 0; i < f.mesh.faces.size(); ++i) {
+		const double angle = 2.4 * static_cast<double>(i);
+		wild.push_back(Point(0.6 * std::cos(angle), 0.6 * std::sin(angle), 0.8));
+	}
+	options.iterations = 100;
+	options.rest = &f.mesh.positions;
+	const auto mean_move = [&](const std::vector<Point>& positions) {
+		double sum = 0;
+		for (std::size_t i = 0; i < positions.size(); ++i)
+			sum += (positions[i] - f.mesh.positions[i]).head<2>().norm();
+		return sum / static_cast<double>(positions.size());
+	};
+	const double held = mean_move(updated(f, wild, options));
+	options.rest = nullptr;
+	CHECK(held < 0.8 * mean_move(updated(f, wild, options)));
+}
+
 TEST_CASE("Vertices that may not or cannot move keep every bit", "[vertex_update]")
 {
 	TriangleMesh mesh = noisy(make_flat_grid(6), 0.3);
@@ -142,9 +204,11 @@ TEST_CASE("Vertices move the same on any number of threads", "[vertex_update][pa
 {
 	const TriangleMesh mesh = noisy(make_torus(20000), 0.2);
 	const StepFixture one(mesh, 1);
-	for (const bool area_weights : {false, true}) {
+	for (const bool adaptive : {false, true}) {
 		VertexUpdateOptions options;
-		options.area_weights = area_weights;
+		options.area_weights = adaptive;
+		options.accelerated = adaptive;
+		options.rest = adaptive ? &mesh.positions : nullptr;
 		const std::vector<Point> expected = updated(one, one.geometry.normals, options);
 		for (const int threads : {2, 4}) {
 			const StepFixture several(mesh, threads);

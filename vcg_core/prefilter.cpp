@@ -72,25 +72,46 @@ void taubin_smooth(
 	}
 }
 
-std::vector<std::uint8_t>
-folded_vertices(const Workspace& workspace, const std::vector<Point>& positions, double cosine)
+std::vector<std::uint8_t> folded_vertices(
+	const Workspace& workspace, const std::vector<Point>& positions, const FoldCriterion& criterion)
 {
-	std::vector<std::uint8_t> flags(positions.size(), 0);
+	const std::vector<Face>& faces = workspace.mesh.faces;
+	const IndexLists& around = workspace.vertex_faces;
+	std::vector<Point> sums(positions.size(), Point::Zero());
 	workspace.execution.parallel_for(
 		workspace.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
 			for (Index i = begin; i < end; ++i) {
-				const Index* const first = workspace.vertex_faces.begin(i);
-				const Index* const last = workspace.vertex_faces.end(i);
-				Point mean = Point::Zero();
-				for (const Index* it = first; it != last; ++it)
-					mean += face_cross_product(positions, workspace.mesh.faces[at(*it)]);
-				const double length = mean.norm();
-				flags[at(i)] = std::any_of(first, last, [&](Index face) {
-					const Point cross =
-						face_cross_product(positions, workspace.mesh.faces[at(face)]);
-					return cross.dot(mean) < cosine * cross.norm() * length;
-				});
+				for (const Index* it = around.begin(i); it != around.end(i); ++it)
+					sums[at(i)] += face_cross_product(positions, faces[at(*it)]);
 			}
+		});
+	std::vector<std::uint8_t> folded(faces.size(), 0);
+	workspace.execution.parallel_for(
+		workspace.mesh.face_count(), GRAIN, [&](Index begin, Index end, int) {
+			for (std::size_t k = at(begin); k < at(end); ++k) {
+				const Face& face = faces[k];
+				const Point cross = face_cross_product(positions, face);
+				double longest = 0;
+				Point surroundings = -3 * cross;
+				for (std::size_t corner = 0; corner < 3; ++corner) {
+					const Point& here = positions[at(face[corner])];
+					const Point& next = positions[at(face[(corner + 1) % 3])];
+					longest = std::max(longest, (next - here).norm());
+					surroundings += sums[at(face[corner])];
+				}
+				const double length = cross.norm();
+				folded[k] =
+					length <= criterion.height * longest &&
+					cross.dot(surroundings) < criterion.cosine * length * surroundings.norm();
+			}
+		});
+	std::vector<std::uint8_t> flags(positions.size(), 0);
+	workspace.execution.parallel_for(
+		workspace.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
+			for (Index i = begin; i < end; ++i)
+				flags[at(i)] = std::any_of(around.begin(i), around.end(i), [&](Index face) {
+					return folded[at(face)] != 0;
+				});
 		});
 	return flags;
 }

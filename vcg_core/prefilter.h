@@ -4,6 +4,7 @@
 #include "workspace.h"
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace orthopoly {
@@ -20,9 +21,20 @@ void taubin_smooth(
 	std::vector<Point>& positions,
 	const std::vector<std::uint8_t>& only = {});
 
-/// #V flags: one where a face around the vertex is turned away from the area-weighted mean normal
-/// by more than its cosine says.
-std::vector<std::uint8_t>
-folded_vertices(const Workspace& workspace, const std::vector<Point>& positions, double cosine);
+/// Which faces `folded_vertices` takes for folded over.
+struct FoldCriterion {
+	/// Turned away from the faces around it (those that share a vertex, itself left out) by more
+	/// than this cosine.
+	double cosine = 0.3;
+	/// No higher than this over its longest side, the caller's length unit: what noise can turn
+	/// over.
+	double height = std::numeric_limits<double>::infinity();
+};
+
+/// #V flags of the corners of faces that are folded over. The same on any number of threads.
+std::vector<std::uint8_t> folded_vertices(
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const FoldCriterion& criterion);
 
 } // namespace orthopoly

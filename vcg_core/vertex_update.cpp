@@ -2,6 +2,8 @@
 #include "vertex_update.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 
 namespace orthopoly {
 
@@ -13,6 +15,17 @@ constexpr Index GRAIN = 2048;
 // Share of the way to the mean of the centroids around it that a vertex at a fold takes: half of
 // the way to the mean of its neighbours, which is half as far again.
 constexpr double UNFOLDING_STEP = 0.75;
+
+// Share of the way to where it rests that a vertex takes in a step: little beside what the normals
+// ask for, and enough to hold it where they ask for nothing.
+constexpr double PULL = 0.1;
+
+// Mean square angle (10 degrees) of faces to their targets from which a vertex feels all of the
+// pull. Where normals fit a surface the angles fall to a fraction of this in the first steps.
+constexpr double UNFIT = 0.03;
+
+// Factor by which the accelerated steps together reduce all of the spectrum above their cutoff.
+constexpr double REDUCTION = 1e-3;
 
 std::size_t at(Index index)
 {
@@ -37,11 +50,49 @@ void compute_centroids(
 		});
 }
 
+/// Chebyshev semi-iteration for a spectrum within (cutoff, 1) (Saad 2003, section 12.3): how much
+/// of the last move a step repeats, and how much of the descent it adds.
+class ChebyshevSteps {
+public:
+	/// The cutoff is the one that so many steps reduce as far as said; a single step is a plain
+	/// one.
+	explicit ChebyshevSteps(int steps)
+	{
+		const double root = std::tanh(0.5 * std::acosh(1 / REDUCTION) / steps);
+		const double cutoff = root * root;
+		center_ = 0.5 * (1 + cutoff);
+		radius_ = 0.5 * (1 - cutoff);
+	}
+
+	void next()
+	{
+		if (ratio_ == 0) {
+			ratio_ = radius_ / center_;
+			descent = 1 / center_;
+			return;
+		}
+		const double last = ratio_;
+		ratio_ = 1 / (2 * center_ / radius_ - last);
+		repeat = ratio_ * last;
+		descent = 2 * ratio_ / radius_;
+	}
+
+	double repeat = 0;
+	double descent = 1;
+
+private:
+	double center_;
+	double radius_;
+	double ratio_ = 0;
+};
+
 /// What a step reads of the faces beside their centroids.
 struct FaceState {
 	std::vector<double> areas;
 	/// Faces turned away from their targets.
 	std::vector<std::uint8_t> folded;
+	/// Squared angles between faces and their targets (to second order; at most 4).
+	std::vector<double> turned;
 };
 
 void compute_state(
@@ -54,12 +105,15 @@ void compute_state(
 	const TriangleMesh& mesh = workspace.mesh;
 	state.areas.resize(mesh.faces.size());
 	state.folded.resize(mesh.faces.size());
+	state.turned.resize(mesh.faces.size());
 	workspace.execution.parallel_for(mesh.face_count(), GRAIN, [&](Index begin, Index end, int) {
 		for (std::size_t k = at(begin); k < at(end); ++k) {
 			const Point cross = face_cross_product(positions, mesh.faces[k]);
 			const double length = cross.norm();
 			state.areas[k] = 0.5 * length;
-			state.folded[k] = cross.dot(normals[k]) < unfold_cosine * length;
+			const double along = cross.dot(normals[k]);
+			state.folded[k] = along < unfold_cosine * length;
+			state.turned[k] = length > 0 ? 2 - 2 * along / length : 0;
 		}
 	});
 }
@@ -76,23 +130,32 @@ void update_vertices(
 	Execution& execution = workspace.execution;
 	std::vector<Point> centroids(mesh.faces.size());
 	const bool unfold = options.unfold_cosine > -1;
+	const bool pulled = options.rest != nullptr;
+	const bool needs_state = options.area_weights || unfold || pulled;
 	FaceState state;
+
+	ChebyshevSteps chebyshev(std::max(1, options.iterations));
+	std::vector<Point> moves(options.accelerated ? positions.size() : 0, Point::Zero());
 
 	for (int step = 0; step < options.iterations; ++step) {
 		execution.begin_part(step, options.iterations);
 		compute_centroids(mesh.faces, positions, execution, centroids);
-		if (options.area_weights || unfold)
+		if (needs_state)
 			compute_state(workspace, normals, positions, options.unfold_cosine, state);
+		chebyshev.next();
 		// A vertex reads centroids and its own position only, so moving in place is safe.
 		execution.parallel_for(mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
 			for (Index i = begin; i < end; ++i) {
 				if (mesh.is_fixed(i))
 					continue;
 				Point& x = positions[at(i)];
+				const Point to_rest = pulled ? Point((*options.rest)[at(i)] - x) : Point::Zero();
 				Point sum = Point::Zero();
+				Point taken = Point::Zero();
 				Point normal = Point::Zero();
 				Point across = Point::Zero();
 				double total = 0;
+				double turned = 0;
 				bool folded = false;
 				for (const Index* it = workspace.vertex_faces.begin(i);
 					 it != workspace.vertex_faces.end(i);
@@ -104,14 +167,29 @@ void update_vertices(
 					const Point offset = centroids[at(*it)] - x;
 					sum += (weight * n.dot(offset)) * n; // eq. 12
 					total += weight;
+					if (pulled) {
+						taken += (weight * n.dot(to_rest)) * n;
+						turned += weight * state.turned[at(*it)];
+					}
 					if (unfold) {
 						normal += weight * n;
 						across += offset;
 						folded = folded || state.folded[at(*it)] != 0;
 					}
 				}
-				if (total > 0)
-					x += sum / total;
+				if (total > 0) {
+					Point move = sum / total;
+					if (pulled) {
+						const double unfit = std::min(1.0, turned / (total * UNFIT));
+						move += PULL * unfit * (to_rest - taken / total);
+					}
+					if (options.accelerated) {
+						Point& last = moves[at(i)];
+						last = chebyshev.repeat * last + chebyshev.descent * move;
+						move = last;
+					}
+					x += move;
+				}
 				if (folded && !normal.isZero(0) && workspace.edges.boundary[at(i)] == 0) {
 					across /= static_cast<double>(workspace.vertex_faces.size(i));
 					x += UNFOLDING_STEP *

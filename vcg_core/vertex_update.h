@@ -18,11 +18,21 @@ struct VertexUpdateOptions {
 	/// also moves across the targets, halfway to the mean of the centroids around it: eq. 12 by
 	/// itself never turns a folded face back. -1 never does so. Off in the paper's method.
 	double unfold_cosine = -1;
+	/// Chebyshev acceleration of the steps: they reach as far along the surface as two to five
+	/// times as many plain ones. Off in the paper's method.
+	bool accelerated = false;
+	/// Where vertices rest (#V), or null: each step also goes a small part of the way there, in the
+	/// directions the normals around the vertex leave free and as far as its faces are still turned
+	/// away from their targets. Where normals do not agree eq. 12 would let vertices slide. Null in
+	/// the paper's method.
+	const std::vector<Point>* rest = nullptr;
 };
 
 /// Moves vertices towards the planes through the face centroids with the given normals (eq. 12).
 ///
-/// All vertices move at once in each step, so the result does not depend on their order. O(#F) a
+/// Each step is one of steepest descent (scaled by the areas around each vertex) on the energy
+/// sum_f A_f sum_(v in f) (n_f . (c_f - x_v))^2, whose spectrum is within [0, 1]. All vertices move
+/// at once in each step, so the result does not depend on their order. O(#F) a
 /// step.
 ///
 /// @param normals   #F target unit normals; a face whose vector is zero is left out of the mean

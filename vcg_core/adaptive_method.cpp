@@ -222,19 +222,20 @@ void record(const Plan& plan, DenoiseOptions& resolved)
 }
 
 // The normals to fit: the prefiltered original's, blended with the current ones by area.
-NormalField normal_field(const FaceGeometry& original, const FaceGeometry& current)
+NormalField normal_field(
+	const FaceGeometry& original, const FaceGeometry& current, Execution& execution)
 {
 	NormalField field;
 	field.guides = current.normals;
 	field.nodes = current.centroids;
 	field.data.resize(current.normals.size());
 	field.weights.resize(current.normals.size());
-	for (std::size_t i = 0; i < current.normals.size(); ++i) {
+	execution.for_each(static_cast<Index>(current.normals.size()), [&](std::size_t i) {
 		const Point blend = ORIGINAL_SHARE * original.areas[i] * original.normals[i] +
 							(1 - ORIGINAL_SHARE) * current.areas[i] * current.normals[i];
 		field.weights[i] = blend.norm();
 		field.data[i] = field.weights[i] > 0 ? Point(blend / field.weights[i]) : blend;
-	}
+	});
 	return field;
 }
 
@@ -292,7 +293,7 @@ private:
 		if (plan_.correlation == 1)
 			return;
 		bound /= 1 - plan_.correlation;
-		for (std::size_t i = 0; i < positions_.size(); ++i) {
+		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
 			const Point& measured = workspace_.mesh.positions[i];
 			const Point way = to[i] - measured;
 			const Point move = positions_[i] - measured;
@@ -302,7 +303,7 @@ private:
 			const double length = drift.norm();
 			if (length > bound)
 				positions_[i] -= (1 - bound / length) * drift;
-		}
+		});
 	}
 
 	void prefilter()
@@ -331,7 +332,7 @@ private:
 		options.smallest_ring = plan_.rings.smallest;
 		options.largest_ring = plan_.rings.largest;
 		options.selection = plan_.selection;
-		return filter_normals(workspace_, normal_field(original, current), options);
+		return filter_normals(workspace_, normal_field(original, current, workspace_.execution), options);
 	}
 
 	// Takes the normals from the measured heights instead, as far as it is clear which faces go
@@ -348,7 +349,7 @@ private:
 			workspace_, {normals, current.centroids, workspace_.mesh.positions}, options);
 		const std::vector<LocalAmbiguity> ambiguities =
 			measure_ambiguity(workspace_, normals, current.areas);
-		for (std::size_t i = 0; i < normals.size(); ++i) {
+		workspace_.execution.for_each(workspace_.mesh.face_count(), [&](std::size_t i) {
 			const LocalAmbiguity& local = ambiguities[i];
 			// Noise in local edge lengths over that at which the limit holds.
 			const double edge = EDGE_PER_ROOT_AREA * std::sqrt(local.mean_area);
@@ -362,7 +363,7 @@ private:
 			const double length = blend.norm();
 			if (length > 0)
 				normals[i] = blend / length;
-		}
+		});
 	}
 
 	const Workspace& workspace_;

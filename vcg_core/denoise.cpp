@@ -117,12 +117,12 @@ DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& options, P
 		method.run(workspace, options, result, positions);
 		execution.begin_phase(0.99, 0.999, "looking at the result");
 		result.folded_faces_after = count_folded_faces(positions, workspace);
-		for (std::size_t i = 0; i < positions.size(); ++i) {
+		execution.for_each(prepared.vertex_count(), [&](std::size_t i) {
 			// What did not move stays bit for bit.
 			if (positions[i] != prepared.positions[i])
 				result.positions[static_cast<std::size_t>(numbering.vertices[i])] =
 					positions[i] + origin;
-		}
+		});
 		record_displacements(mesh, result);
 		progress.report(1, "done");
 	}

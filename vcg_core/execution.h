@@ -46,10 +46,23 @@ public:
 	/// exception of the body ends the loop the same way and is thrown on.
 	void parallel_for(Index count, Index grain, const Body& body);
 
+	/// Calls body(i) for every index in [0, count), many of them at a time on a thread.
+	template<class EachBody>
+	void for_each(Index count, EachBody body)
+	{
+		parallel_for(count, EACH_GRAIN, [&](Index begin, Index end, int) {
+			for (Index i = begin; i < end; ++i)
+				body(static_cast<std::size_t>(i));
+		});
+	}
+
 	/// Sum of term(i) over [0, count), added up in an order that does not depend on the threads.
 	double sum(Index count, const std::function<double(Index)>& term);
 
 private:
+	/// Some tens of microseconds of a few dozen operations each.
+	static constexpr Index EACH_GRAIN = 2048;
+
 	class Workers;
 	void poll(double fraction_of_part);
 

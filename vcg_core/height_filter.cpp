@@ -412,10 +412,10 @@ std::vector<Point> normals_from_heights(
 	for (int worker = 0; worker < workspace.execution.threads(); ++worker)
 		voters.emplace_back(workspace, field, options);
 	std::vector<Point> result = sum_votes(workspace, voters);
-	for (std::size_t i = 0; i < result.size(); ++i) {
+	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
 		const double length = result[i].norm();
 		result[i] = length > 0 ? Point(result[i] / length) : field.guides[i];
-	}
+	});
 	return result;
 }
 

@@ -129,11 +129,12 @@ double LocalHeights::edge_correlation() const
 std::vector<double> areas_around(const Workspace& workspace, const std::vector<Point>& positions)
 {
 	std::vector<double> areas(positions.size(), 0.0);
-	for (Index i = 0; i < workspace.mesh.vertex_count(); ++i) {
-		const IndexLists& around = workspace.vertex_faces;
-		for (const Index* face = around.begin(i); face != around.end(i); ++face)
-			areas[at(i)] += face_cross_product(positions, workspace.mesh.faces[at(*face)]).norm();
-	}
+	const IndexLists& around = workspace.vertex_faces;
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		const auto vertex = static_cast<Index>(i);
+		for (const Index* face = around.begin(vertex); face != around.end(vertex); ++face)
+			areas[i] += face_cross_product(positions, workspace.mesh.faces[at(*face)]).norm();
+	});
 	return areas;
 }
 

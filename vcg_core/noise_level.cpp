@@ -56,18 +56,18 @@ double clean_edge_length(
 	const std::vector<Point>& smooth,
 	double sigma)
 {
-	std::vector<Point> normals(noisy.size(), Point::Zero());
-	for (const Face& face : workspace.mesh.faces) {
-		const Point cross = face_cross_product(smooth, face);
-		for (const Index corner : face)
-			normals[static_cast<std::size_t>(corner)] += cross;
-	}
 	std::vector<Point> flattened = noisy;
-	for (std::size_t i = 0; i < noisy.size(); ++i) {
-		const double square = normals[i].squaredNorm();
+	const IndexLists& around = workspace.vertex_faces;
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		const auto vertex = static_cast<Index>(i);
+		Point normal = Point::Zero();
+		for (const Index* face = around.begin(vertex); face != around.end(vertex); ++face)
+			normal +=
+				face_cross_product(smooth, workspace.mesh.faces[static_cast<std::size_t>(*face)]);
+		const double square = normal.squaredNorm();
 		if (square > 0)
-			flattened[i] += (smooth[i] - noisy[i]).dot(normals[i]) / square * normals[i];
-	}
+			flattened[i] += (smooth[i] - noisy[i]).dot(normal) / square * normal;
+	});
 	const double smoothed = mean_edge_length(workspace, smooth);
 	if (!(smoothed > 0))
 		return 0;

@@ -427,10 +427,10 @@ std::vector<Point> filter_normals(
 	for (Structures& own : structures)
 		voters.emplace_back(own, options, floors);
 	std::vector<Point> result = sum_votes(workspace, voters);
-	for (std::size_t i = 0; i < result.size(); ++i) {
+	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
 		const double length = result[i].norm();
 		result[i] = length > 0 && field.weights[i] > 0 ? Point(result[i] / length) : field.data[i];
-	}
+	});
 	return result;
 }
 

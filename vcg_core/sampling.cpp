@@ -2,7 +2,7 @@
 #include "sampling.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace orthopoly {
@@ -11,6 +11,7 @@ namespace {
 
 // Digits of a value beyond this many parts of its mean are rounding.
 constexpr double DICE_RESOLUTION = 1e6;
+constexpr double LARGEST_DIGITS = 1e18;
 
 } // namespace
 
@@ -23,9 +24,9 @@ std::vector<Index> sample_by_value(const std::vector<double>& values, Index want
 						std::max(1.0, static_cast<double>(count));
 	if (every > 1 && mean > 0) {
 		for (Index i = 0; i < count; ++i) {
-			const double digits =
-				std::floor(DICE_RESOLUTION * values[static_cast<std::size_t>(i)] / mean);
-			if (std::fmod(digits, static_cast<double>(every)) == 0)
+			const double digits = DICE_RESOLUTION * values[static_cast<std::size_t>(i)] / mean;
+			// Sizes beyond that are no digits, and too rare to be missed.
+			if (digits < LARGEST_DIGITS && static_cast<std::int64_t>(digits) % every == 0)
 				sample.push_back(i);
 		}
 	}

@@ -32,24 +32,6 @@ std::size_t at(Index index)
 	return static_cast<std::size_t>(index);
 }
 
-void compute_centroids(
-	const std::vector<Face>& faces,
-	const std::vector<Point>& positions,
-	Execution& execution,
-	std::vector<Point>& centroids)
-{
-	execution.parallel_for(
-		static_cast<Index>(faces.size()), GRAIN, [&](Index begin, Index end, int) {
-			for (std::size_t k = at(begin); k < at(end); ++k) {
-				const Face& face = faces[k];
-				// From the first corner: the sum of three far-off corners would lose digits.
-				const Point& a = positions[at(face[0])];
-				centroids[k] =
-					a + ((positions[at(face[1])] - a) + (positions[at(face[2])] - a)) / 3.0;
-			}
-		});
-}
-
 /// Chebyshev semi-iteration for a spectrum within (cutoff, 1) (Saad 2003, section 12.3): how much
 /// of the last move a step repeats, and how much of the descent it adds.
 class ChebyshevSteps {
@@ -86,36 +68,41 @@ private:
 	double ratio_ = 0;
 };
 
-/// What a step reads of the faces beside their centroids.
-struct FaceState {
-	std::vector<double> areas;
-	/// Faces turned away from their targets.
-	std::vector<std::uint8_t> folded;
-	/// Squared angles between faces and their targets (to second order; at most 4).
-	std::vector<double> turned;
+/// What a step reads of a face: a cache line.
+struct alignas(64) FaceState {
+	/// Target; zero where there is none.
+	Point normal;
+	Point centroid;
+	double weight;
+	/// Squared angle between face and target (to second order; at most 4).
+	float turned;
+	/// Turned away from the target.
+	bool folded;
 };
 
-void compute_state(
-	const Workspace& workspace,
-	const std::vector<Point>& normals,
+// From the first corner: the sum of three far-off corners would lose digits.
+Point centroid_of(const std::vector<Point>& positions, const Face& face)
+{
+	const Point& a = positions[at(face[0])];
+	return a + ((positions[at(face[1])] - a) + (positions[at(face[2])] - a)) / 3.0;
+}
+
+void measure(
 	const std::vector<Point>& positions,
-	double unfold_cosine,
+	const Face& face,
+	const VertexUpdateOptions& options,
 	FaceState& state)
 {
-	const TriangleMesh& mesh = workspace.mesh;
-	state.areas.resize(mesh.faces.size());
-	state.folded.resize(mesh.faces.size());
-	state.turned.resize(mesh.faces.size());
-	workspace.execution.parallel_for(mesh.face_count(), GRAIN, [&](Index begin, Index end, int) {
-		for (std::size_t k = at(begin); k < at(end); ++k) {
-			const Point cross = face_cross_product(positions, mesh.faces[k]);
-			const double length = cross.norm();
-			state.areas[k] = 0.5 * length;
-			const double along = cross.dot(normals[k]);
-			state.folded[k] = along < unfold_cosine * length;
-			state.turned[k] = length > 0 ? 2 - 2 * along / length : 0;
-		}
-	});
+	state.centroid = centroid_of(positions, face);
+	if (!options.area_weights && options.unfold_cosine <= -1 && options.rest == nullptr)
+		return;
+	const Point cross = face_cross_product(positions, face);
+	const double length = cross.norm();
+	if (options.area_weights)
+		state.weight = 0.5 * length;
+	const double along = cross.dot(state.normal);
+	state.folded = along < options.unfold_cosine * length;
+	state.turned = length > 0 ? static_cast<float>(2 - 2 * along / length) : 0;
 }
 
 } // namespace
@@ -128,20 +115,21 @@ void update_vertices(
 {
 	const TriangleMesh& mesh = workspace.mesh;
 	Execution& execution = workspace.execution;
-	std::vector<Point> centroids(mesh.faces.size());
 	const bool unfold = options.unfold_cosine > -1;
 	const bool pulled = options.rest != nullptr;
-	const bool needs_state = options.area_weights || unfold || pulled;
-	FaceState state;
+	std::vector<FaceState> states(mesh.faces.size());
+	execution.for_each(mesh.face_count(), [&](std::size_t i) {
+		states[i] = {normals[i], Point::Zero(), 1, 0, false};
+	});
 
 	ChebyshevSteps chebyshev(std::max(1, options.iterations));
 	std::vector<Point> moves(options.accelerated ? positions.size() : 0, Point::Zero());
 
 	for (int step = 0; step < options.iterations; ++step) {
 		execution.begin_part(step, options.iterations);
-		compute_centroids(mesh.faces, positions, execution, centroids);
-		if (needs_state)
-			compute_state(workspace, normals, positions, options.unfold_cosine, state);
+		execution.for_each(mesh.face_count(), [&](std::size_t i) {
+			measure(positions, mesh.faces[i], options, states[i]);
+		});
 		chebyshev.next();
 		// A vertex reads centroids and its own position only, so moving in place is safe.
 		execution.parallel_for(mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
@@ -160,21 +148,21 @@ void update_vertices(
 				for (const Index* it = workspace.vertex_faces.begin(i);
 					 it != workspace.vertex_faces.end(i);
 					 ++it) {
-					const Point& n = normals[at(*it)];
+					const FaceState& face = states[at(*it)];
+					const Point& n = face.normal;
 					if (n.isZero(0))
 						continue;
-					const double weight = options.area_weights ? state.areas[at(*it)] : 1.0;
-					const Point offset = centroids[at(*it)] - x;
-					sum += (weight * n.dot(offset)) * n; // eq. 12
-					total += weight;
+					const Point offset = face.centroid - x;
+					sum += (face.weight * n.dot(offset)) * n; // eq. 12
+					total += face.weight;
 					if (pulled) {
-						taken += (weight * n.dot(to_rest)) * n;
-						turned += weight * state.turned[at(*it)];
+						taken += (face.weight * n.dot(to_rest)) * n;
+						turned += face.weight * static_cast<double>(face.turned);
 					}
 					if (unfold) {
-						normal += weight * n;
+						normal += face.weight * n;
 						across += offset;
-						folded = folded || state.folded[at(*it)] != 0;
+						folded = folded || face.folded;
 					}
 				}
 				if (total > 0) {

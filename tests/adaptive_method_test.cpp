@@ -320,6 +320,21 @@ TEST_CASE("Single views of a depth camera are found and treated as such", "[adap
 	CHECK(angle_after(white, NoiseType::Automatic) == angle_after(white, NoiseType::White));
 }
 
+TEST_CASE("Impulsive noise goes without the surface", "[adaptive_method]")
+{
+	const TriangleMesh truth = make_sphere(8000);
+	NoiseOptions options;
+	options.sigma = 0.4;
+	for (const double share : {0.1, 0.3}) {
+		options.impulsive_share = share;
+		const TriangleMesh mesh = with_positions(truth, add_noise(truth, options));
+		const ErrorMeasures errors = errors_of(mesh, truth);
+		CAPTURE(share, errors.mean_angle);
+		CHECK(errors.mean_angle < 0.8);
+		CHECK(errors.folded_faces == 0);
+	}
+}
+
 TEST_CASE("A clean mesh stays as it is", "[adaptive_method]")
 {
 	for (const std::string name :
@@ -330,6 +345,12 @@ TEST_CASE("A clean mesh stays as it is", "[adaptive_method]")
 		CHECK(result.status == Status::NothingToDo);
 		CHECK(result.estimated_noise < 0.025);
 		CHECK(same_bits(result.positions, mesh.positions));
+	}
+	// So coarse that hardly a place is flat.
+	for (const std::string name : {"part", "height_field"}) {
+		CAPTURE(name);
+		const TriangleMesh mesh = find_recipe(name).make(2000);
+		CHECK(same_bits(run(mesh).positions, mesh.positions));
 	}
 }
 

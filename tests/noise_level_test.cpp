@@ -64,6 +64,11 @@ TEST_CASE("Clean meshes read as clean", "[noise_level]")
 			CHECK(estimated(recipe.make(static_cast<Index>(faces))) < 0.025);
 		}
 	}
+	// Coarse ones as well.
+	for (const std::string name : {"part", "height_field"}) {
+		CAPTURE(name);
+		CHECK(estimated(find_recipe(name).make(2000)) < 0.025);
+	}
 	CHECK(estimated(make_flat_grid(20)) < 1e-12);
 }
 
@@ -96,6 +101,25 @@ TEST_CASE("The estimate does not depend on size, place or order", "[noise_level]
 		shuffled.faces[i] = {face[1], face[2], face[0]};
 	}
 	CHECK(estimated(shuffled) == Approx(expected).epsilon(1e-9));
+}
+
+TEST_CASE("Rare outliers show in ordinary places only", "[noise_level]")
+{
+	NoiseOptions options;
+	options.sigma = 0.5;
+	options.impulsive_share = 0.1;
+	TriangleMesh mesh = make_sphere(8000);
+	mesh.positions = add_noise(mesh, options);
+	const StepFixture f(mesh);
+	const NoiseLevels levels = estimate_noise_levels(f.workspace, mesh.positions);
+	CHECK(levels.ordinary > 0.025);
+	CHECK(levels.flat < 0.6 * levels.ordinary);
+	// White noise is the same everywhere.
+	const TriangleMesh white = noisy(make_sphere(8000), 0.2);
+	const StepFixture g(white);
+	const NoiseLevels same = estimate_noise_levels(g.workspace, white.positions);
+	CHECK(same.flat == Approx(same.ordinary).epsilon(0.05));
+	CHECK(same.flat == estimate_noise_level(g.workspace, white.positions));
 }
 
 TEST_CASE("A part of the surface with features does not raise the estimate", "[noise_level]")

@@ -23,35 +23,35 @@ std::size_t at(Index index)
 
 } // namespace
 
-LocalHeights::LocalHeights(
-	const Workspace& workspace, const std::vector<Point>& noisy, const std::vector<Point>& smooth) :
-		workspace_(workspace),
-		noisy_(noisy), smooth_(smooth), places_(noisy.size(), 0)
+void VertexRings::collect(Index vertex, int rings)
 {
-}
-
-void LocalHeights::collect(Index vertex, int rings)
-{
-	for (const Index i : ring_)
+	for (const Index i : vertices_)
 		places_[at(i)] = 0;
-	ring_.assign(1, vertex);
+	vertices_.assign(1, vertex);
 	places_[at(vertex)] = 1;
 	const IndexLists& around = workspace_.vertex_faces;
 	std::size_t first = 0;
 	for (int ring = 0; ring < rings; ++ring) {
-		const std::size_t last = ring_.size();
+		const std::size_t last = vertices_.size();
 		for (; first < last; ++first) {
-			const Index i = ring_[first];
+			const Index i = vertices_[first];
 			for (const Index* face = around.begin(i); face != around.end(i); ++face) {
 				for (const Index corner : workspace_.mesh.faces[at(*face)]) {
 					if (places_[at(corner)] == 0) {
-						ring_.push_back(corner);
-						places_[at(corner)] = static_cast<Index>(ring_.size());
+						vertices_.push_back(corner);
+						places_[at(corner)] = static_cast<Index>(vertices_.size());
 					}
 				}
 			}
 		}
 	}
+}
+
+LocalHeights::LocalHeights(
+	const Workspace& workspace, const std::vector<Point>& noisy, const std::vector<Point>& smooth) :
+		workspace_(workspace),
+		noisy_(noisy), smooth_(smooth), rings_(workspace)
+{
 }
 
 bool LocalHeights::fit(Index vertex, int rings)
@@ -61,8 +61,9 @@ bool LocalHeights::fit(Index vertex, int rings)
 	for (const Index* face = around.begin(vertex); face != around.end(vertex); ++face)
 		normal += face_cross_product(smooth_, workspace_.mesh.faces[at(*face)]);
 	const double length = normal.norm();
-	collect(vertex, rings);
-	if (ring_.size() < TERMS + FEWEST_FREE || !(length > 0))
+	rings_.collect(vertex, rings);
+	const std::vector<Index>& ring = rings_.vertices();
+	if (ring.size() < TERMS + FEWEST_FREE || !(length > 0))
 		return false;
 	normal /= length;
 	const Point tangent = normal.unitOrthogonal();
@@ -70,16 +71,16 @@ bool LocalHeights::fit(Index vertex, int rings)
 
 	const Point& center = smooth_[at(vertex)];
 	double extent = 0;
-	for (const Index i : ring_)
+	for (const Index i : ring)
 		extent = std::max(extent, (smooth_[at(i)] - center).squaredNorm());
 	if (!(extent > 0))
 		return false;
 	const double scale = 1.0 / std::sqrt(extent);
-	const auto count = static_cast<Eigen::Index>(ring_.size());
+	const auto count = static_cast<Eigen::Index>(ring.size());
 	basis_.resize(Eigen::NoChange, count);
 	heights_.resize(count);
 	for (Eigen::Index k = 0; k < count; ++k) {
-		const std::size_t i = at(ring_[static_cast<std::size_t>(k)]);
+		const std::size_t i = at(ring[static_cast<std::size_t>(k)]);
 		const Point node = scale * (smooth_[i] - center);
 		const double x = node.dot(tangent);
 		const double y = node.dot(bitangent);
@@ -107,11 +108,11 @@ double LocalHeights::edge_correlation() const
 	double white_squares = 0;
 	const IndexLists& around = workspace_.vertex_faces;
 	for (Eigen::Index a = 0; a < residual_.size(); ++a) {
-		const Index i = ring_[static_cast<std::size_t>(a)];
+		const Index i = rings_.vertices()[static_cast<std::size_t>(a)];
 		const double left_a = 1 - basis_.col(a).squaredNorm();
 		for (const Index* face = around.begin(i); face != around.end(i); ++face) {
 			for (const Index corner : workspace_.mesh.faces[at(*face)]) {
-				const Eigen::Index b = places_[at(corner)] - 1;
+				const Eigen::Index b = rings_.place(corner);
 				if (b <= a)
 					continue;
 				const double left_b = 1 - basis_.col(b).squaredNorm();

@@ -8,6 +8,30 @@
 
 namespace orthopoly {
 
+/// Collects the vertices within some rings of one, over shared faces, nearest rings first. Keeps
+/// scratch memory (4 bytes a vertex), so use one object a thread.
+class VertexRings {
+public:
+	/// The workspace must outlive the collector.
+	explicit VertexRings(const Workspace& workspace) :
+			workspace_(workspace), places_(workspace.mesh.positions.size(), 0)
+	{
+	}
+
+	/// Fills vertices(), the vertex itself first.
+	void collect(Index vertex, int rings);
+
+	const std::vector<Index>& vertices() const { return vertices_; }
+	/// Where a vertex stands in vertices(); -1 for those outside.
+	Index place(Index vertex) const { return places_[static_cast<std::size_t>(vertex)] - 1; }
+
+private:
+	const Workspace& workspace_;
+	/// Places plus one, zero for those outside.
+	std::vector<Index> places_;
+	std::vector<Index> vertices_;
+};
+
 /// Cubic height polynomials fitted around vertices, one at a time, and what they leave of the
 /// heights: noise where the surface is smooth. Ten terms are the fewest that take ordinary
 /// curvature and its change out of the residual. Keeps scratch memory, so use one object a thread.
@@ -26,7 +50,7 @@ public:
 	bool fit(Index vertex, int rings);
 
 	/// Degrees of freedom of the residual: vertices less terms.
-	double free() const { return static_cast<double>(ring_.size()) - TERMS; }
+	double free() const { return static_cast<double>(rings_.vertices().size()) - TERMS; }
 	/// Residual variance of the last fit, in the square of the caller's length unit.
 	double variance() const { return residual_.squaredNorm() / free(); }
 	/// Mean product of the residuals of two vertices that share a face over their mean square, less
@@ -37,14 +61,10 @@ private:
 	static constexpr int TERMS = 10;
 	using Gram = Eigen::Matrix<double, TERMS, TERMS>;
 
-	void collect(Index vertex, int rings);
-
 	const Workspace& workspace_;
 	const std::vector<Point>& noisy_;
 	const std::vector<Point>& smooth_;
-	/// Place of a vertex in ring_, plus one; zero for those outside.
-	std::vector<Index> places_;
-	std::vector<Index> ring_;
+	VertexRings rings_;
 	/// Terms by vertices of the ring: monomials at the nodes, orthonormal polynomials after a fit.
 	Eigen::Matrix<double, TERMS, Eigen::Dynamic> basis_;
 	Eigen::VectorXd heights_;

@@ -12,13 +12,19 @@ namespace orthopoly {
 
 namespace {
 
-// The share of the residual variances that is taken as free of features, which only ever add to
-// them: low for coarse meshes with few flat places, but not so low that it is ruled by the tail of
-// noise that is not Gaussian, or misses outliers.
-constexpr double QUANTILE = 0.2;
+/// A share of the residual variances and the same quantile of the normal distribution.
+struct Quantile {
+	double share;
+	double normal;
+};
 
-// The same quantile of the normal distribution.
-constexpr double NORMAL_QUANTILE = -0.8416;
+// The share that is taken as free of features, which only ever add to the variances: low for coarse
+// meshes with few flat places, but not so low that it is ruled by the tail of noise that is not
+// Gaussian.
+constexpr Quantile FLAT = {0.2, -0.8416};
+
+// And one at which there are outliers among the neighbours.
+constexpr Quantile ORDINARY = {0.5, 0};
 
 // The quantile of so many variances is steady to about one per cent.
 constexpr Index SAMPLES = 20000;
@@ -37,10 +43,10 @@ constexpr double LENGTHENING = 1.2;
 
 // The quantile of the mean of squares over so many degrees of freedom, for noise of variance one
 // (Wilson and Hilferty 1931).
-double quantile_of_variance(double free)
+double quantile_of_variance(const Quantile& quantile, double free)
 {
 	const double spread = 2 / (9 * free);
-	return std::pow(1 - spread + NORMAL_QUANTILE * std::sqrt(spread), 3);
+	return std::pow(1 - spread + quantile.normal * std::sqrt(spread), 3);
 }
 
 // The mean edge length of the surface below the noise, whose deviation along the normals is given
@@ -80,12 +86,16 @@ double clean_edge_length(
 
 } // namespace
 
-double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions)
+NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions)
 {
 	std::vector<Point> smooth = positions;
 	taubin_smooth(workspace, SMOOTHING_PAIRS, smooth);
 	const std::vector<Index> sample = sample_by_value(areas_around(workspace, positions), SAMPLES);
-	std::vector<double> variances(sample.size());
+	struct Variance {
+		double value = -1;
+		double free = 0;
+	};
+	std::vector<Variance> variances(sample.size());
 	std::vector<LocalHeights> heights(
 		static_cast<std::size_t>(workspace.execution.threads()),
 		LocalHeights(workspace, positions, smooth));
@@ -94,17 +104,31 @@ double estimate_noise_level(const Workspace& workspace, const std::vector<Point>
 			LocalHeights& local = heights[static_cast<std::size_t>(worker)];
 			for (Index i = begin; i < end; ++i) {
 				const auto at = static_cast<std::size_t>(i);
-				variances[at] = local.fit(sample[at], RINGS) ?
-									local.variance() / quantile_of_variance(local.free()) :
-									-1;
+				if (local.fit(sample[at], RINGS))
+					variances[at] = {local.variance(), local.free()};
 			}
 		});
-	variances.erase(
-		std::remove_if(variances.begin(), variances.end(), [](double v) { return v < 0; }),
-		variances.end());
-	const double sigma = std::sqrt(quantile(variances, QUANTILE));
-	const double length = clean_edge_length(workspace, positions, smooth, sigma);
-	return length > 0 ? sigma / length : 0;
+	const auto level = [&](const Quantile& wanted) {
+		std::vector<double> values;
+		for (const Variance& variance : variances) {
+			if (variance.value >= 0)
+				values.push_back(variance.value / quantile_of_variance(wanted, variance.free));
+		}
+		return std::sqrt(quantile(values, wanted.share));
+	};
+	NoiseLevels result;
+	const double flat = level(FLAT);
+	const double length = clean_edge_length(workspace, positions, smooth, flat);
+	if (length > 0) {
+		result.flat = flat / length;
+		result.ordinary = level(ORDINARY) / length;
+	}
+	return result;
+}
+
+double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions)
+{
+	return estimate_noise_levels(workspace, positions).flat;
 }
 
 } // namespace orthopoly

@@ -10,8 +10,18 @@ namespace orthopoly {
 /// Standard deviation of the noise along the surface normal, in mean edge lengths.
 ///
 /// Around each of a sample of vertices a cubic height polynomial is fitted to the 2-ring; what it
-/// leaves is noise where the surface is smooth. A low quantile of the residual variances keeps
-/// edges out. Zero where no vertex has neighbours enough. O(#V) time.
+/// leaves is noise where the surface is smooth. A low quantile of the residual variances, each
+/// normalised by its degrees of freedom, keeps edges out. Zero where no vertex has neighbours
+/// enough. O(#V) time.
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions);
+
+/// The same at two quantiles.
+struct NoiseLevels {
+	/// In the flatter places: what `estimate_noise_level` gives. Misses outliers that are rare.
+	double flat = 0;
+	/// In ordinary places: with rare outliers, and on coarse meshes some of the surface itself.
+	double ordinary = 0;
+};
+NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions);
 
 } // namespace orthopoly

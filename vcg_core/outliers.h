@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "workspace.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace orthopoly {
+
+/// A mesh with its outliers put back.
+struct Outliers {
+	/// #V flags: one where a vertex stands out of what its surroundings say.
+	std::vector<std::uint8_t> flags;
+	/// #V positions: outliers where their surroundings expect them, the others bit for bit as
+	/// given.
+	std::vector<Point> positions;
+	Index count = 0;
+};
+
+/// Finds the vertices that are further off than the noise around them, as impulsive noise leaves
+/// them, and puts them back.
+///
+/// Every vertex is compared with a quadratic height polynomial fitted to the others within two
+/// rings, each weighed by how well it agrees with its own surroundings (iteratively reweighted
+/// least squares with the weights of Geman and McClure). Edges and corners are far off too, but so
+/// are their neighbours, and it is by these that the distance is judged. Fixed vertices stay, and
+/// all do where the noise is not made by outliers.
+///
+/// @param noise the level as `estimate_noise_level` reads it, outliers and all
+///
+/// O(#V) time; the same bits on any number of threads. Throws Cancelled.
+Outliers
+put_back_outliers(const Workspace& workspace, const std::vector<Point>& positions, double noise);
+
+} // namespace orthopoly

@@ -51,6 +51,9 @@ constexpr double FOLD_COSINE = 0.3;
 // length in random directions, whose spread along the normal the level is, reaches so far.
 constexpr double DRIFT_BOUND = 5;
 
+// Median ratio (see NoiseLevels) from which there is no need to look for outliers.
+constexpr double NO_OUTLIERS = 0.9;
+
 // What is left of the noise level without the outliers, at which they are put back before anything
 // else (fully at the second value): white noise loses a twentieth with them, noise whose amplitude
 // varies a seventh, impulsive noise more than half.
@@ -382,9 +385,10 @@ private:
 
 // Makes a mesh with the outliers put back, as far as they explain the noise (in ordinary places,
 // whose level is given). Returns how far that is, from 0 to 1.
-double put_outliers_back(const Workspace& workspace, double noise, TriangleMesh& mesh)
+double put_outliers_back(const Workspace& workspace, const NoiseLevels& levels, TriangleMesh& mesh)
 {
-	if (noise < LEAST_NOISE)
+	const double noise = levels.ordinary;
+	if (noise < LEAST_NOISE || levels.median_ratio > NO_OUTLIERS)
 		return 0;
 	const Outliers outliers = put_back_outliers(workspace, workspace.mesh.positions, noise);
 	if (outliers.count == 0)
@@ -416,7 +420,7 @@ void run_adaptive_method(
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
 	TriangleMesh mesh;
 	const double outliers =
-		correlation < 1 ? put_outliers_back(workspace, levels.ordinary, mesh) : 0;
+		correlation < 1 ? put_outliers_back(workspace, levels, mesh) : 0;
 	result.estimated_noise = levels.flat + outliers * (levels.ordinary - levels.flat);
 	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
 	result.resolved.noise_type = correlation > 0.5 ? NoiseType::Scanner : NoiseType::White;

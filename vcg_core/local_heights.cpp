@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "local_heights.h"
 
+#include "sampling.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,6 +17,9 @@ constexpr std::size_t FEWEST_FREE = 4;
 
 // Nodes on a line, or on a conic's worth of coincidences, do not fix a cubic.
 constexpr double LEAST_CONDITION = 1e-10;
+
+// Deviation of a normal distribution over the median of its absolute values.
+constexpr double DEVIATION_PER_MEDIAN = 1.4826;
 
 std::size_t at(Index index)
 {
@@ -97,6 +102,15 @@ bool LocalHeights::fit(Index vertex, int rings)
 	residual_ = heights_;
 	residual_.noalias() -= basis_.transpose() * coefficients;
 	return true;
+}
+
+double LocalHeights::median_ratio()
+{
+	const double square = residual_.squaredNorm() / static_cast<double>(residual_.size());
+	sizes_.assign(residual_.begin(), residual_.end());
+	for (double& size : sizes_)
+		size = std::abs(size);
+	return square > 0 ? DEVIATION_PER_MEDIAN * quantile(sizes_, 0.5) / std::sqrt(square) : 1;
 }
 
 double LocalHeights::edge_correlation() const

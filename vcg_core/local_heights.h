@@ -53,6 +53,9 @@ public:
 	double free() const { return static_cast<double>(rings_.vertices().size()) - TERMS; }
 	/// Residual variance of the last fit, in the square of the caller's length unit.
 	double variance() const { return residual_.squaredNorm() / free(); }
+	/// The deviation that the median of the absolute residuals tells over the one their squares
+	/// tell: 1 for Gaussian noise, less where a few large ones make up the noise.
+	double median_ratio();
 	/// Mean product of the residuals of two vertices that share a face over their mean square, less
 	/// what independent noise would give: zero but for chance where the noise is white.
 	double edge_correlation() const;
@@ -69,6 +72,7 @@ private:
 	Eigen::Matrix<double, TERMS, Eigen::Dynamic> basis_;
 	Eigen::VectorXd heights_;
 	Eigen::VectorXd residual_;
+	std::vector<double> sizes_;
 };
 
 /// #V sums of the face areas around every vertex, times two: with them `sample_by_value` chooses

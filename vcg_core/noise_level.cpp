@@ -32,6 +32,11 @@ constexpr Index SAMPLES = 20000;
 // Taubin pairs after which the normals of a mesh with noise of half an edge length are steady.
 constexpr double SMOOTHING_PAIRS = 4;
 
+// Polynomials that tell the kind of noise: wide ones, since narrow ones follow an outlier, and a
+// few, since they are slow.
+constexpr int WIDE_RINGS = 4;
+constexpr std::size_t WIDE_SAMPLES = 500;
+
 constexpr Index GRAIN = 64;
 
 // Rings of vertices of a polynomial.
@@ -108,6 +113,18 @@ NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<
 					variances[at] = {local.variance(), local.free()};
 			}
 		});
+	const std::size_t every = std::max<std::size_t>(1, sample.size() / WIDE_SAMPLES);
+	std::vector<double> ratios(sample.size() / every, -1);
+	workspace.execution.parallel_for(
+		static_cast<Index>(ratios.size()), 4, [&](Index begin, Index end, int worker) {
+			LocalHeights& local = heights[static_cast<std::size_t>(worker)];
+			for (Index i = begin; i < end; ++i) {
+				const auto at = static_cast<std::size_t>(i);
+				if (local.fit(sample[every * at], WIDE_RINGS))
+					ratios[at] = local.median_ratio();
+			}
+		});
+	ratios.erase(std::remove(ratios.begin(), ratios.end(), -1), ratios.end());
 	const auto level = [&](const Quantile& wanted) {
 		std::vector<double> values;
 		for (const Variance& variance : variances) {
@@ -117,6 +134,8 @@ NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<
 		return std::sqrt(quantile(values, wanted.share));
 	};
 	NoiseLevels result;
+	if (!ratios.empty())
+		result.median_ratio = quantile(ratios, 0.5);
 	const double flat = level(FLAT);
 	const double length = clean_edge_length(workspace, positions, smooth, flat);
 	if (length > 0) {

@@ -15,12 +15,15 @@ namespace orthopoly {
 /// enough. O(#V) time.
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions);
 
-/// The same at two quantiles.
+/// The same at two quantiles, and what kind of noise it is.
 struct NoiseLevels {
 	/// In the flatter places: what `estimate_noise_level` gives. Misses outliers that are rare.
 	double flat = 0;
 	/// In ordinary places: with rare outliers, and on coarse meshes some of the surface itself.
 	double ordinary = 0;
+	/// Median ratio of the residuals of wide polynomials (see LocalHeights): 1 where the noise is
+	/// Gaussian, 0.8 where its directions are random, two thirds where it is impulsive.
+	double median_ratio = 1;
 };
 NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions);
 

@@ -70,10 +70,6 @@ constexpr double HEIGHT_SELECTION = 12;
 // normals: filtering the original again keeps detail that filtering the filtered would lose.
 constexpr double ORIGINAL_SHARE = 0.7;
 
-// Rings of the height structures: two more vertices away than those of the normals, since heights
-// are steadier the wider they reach.
-constexpr int HEIGHT_RINGS = 5;
-
 // Ambiguity (0 to 1) beyond which normals decide alone, at the relative noise below: heights know
 // edges only through the guides, and these know them less where the noise is larger than the
 // triangles.
@@ -137,6 +133,15 @@ Rings rings_for(double noise)
 	return noise < 0.35 ? Rings {3, 4} : Rings {3, 5};
 }
 
+// Rings of the height structures: more than those of the normals, since heights are steadier the
+// wider they reach, and wider the more noise hides the detail there is.
+int height_rings_for(double noise)
+{
+	if (noise < 0.11)
+		return 5;
+	return noise < 0.16 ? 6 : 7;
+}
+
 // Everything an iteration goes by.
 struct Plan {
 	bool scanner = false;
@@ -149,7 +154,7 @@ struct Plan {
 	double cos_threshold_increment = LEAST_INCREMENT;
 	double selection = SELECTION;
 	Rings rings = {2, 4};
-	int height_rings = HEIGHT_RINGS;
+	int height_rings = 5;
 };
 
 double strength_factor(Strength strength)
@@ -181,6 +186,7 @@ Plan plan_for(const DenoiseOptions& options, double noise)
 		plan.cos_threshold = cos_threshold_for(noise);
 		plan.cos_threshold_increment = cos_threshold_increment_for(noise);
 		plan.rings = rings_for(noise);
+		plan.height_rings = height_rings_for(noise);
 	}
 	if (options.structure_ring) {
 		plan.rings.largest = *options.structure_ring;

@@ -81,12 +81,10 @@ constexpr double HEIGHT_SELECTION = 12;
 // normals: filtering the original again keeps detail that filtering the filtered would lose.
 constexpr double ORIGINAL_SHARE = 0.7;
 
-// Noise from which height structures of one ring are not worth fitting: they hold too few vertices.
-constexpr double NO_SINGLE_RINGS = 0.15;
-
-// Rings of the height structures: two more vertices away than those of the normals, since heights
-// are steadier the wider they reach.
-constexpr int HEIGHT_RINGS = 5;
+// Noise from which height structures are wide: those of one ring hold too few vertices to be worth
+// fitting, and all have so many members in common that one in two faces having its own is enough.
+constexpr double WIDE_STRUCTURES_NOISE = 0.15;
+constexpr int FACES_PER_WIDE_STRUCTURE = 2;
 
 // Ambiguity (0 to 1) beyond which normals decide alone, at the relative noise below: heights know
 // edges only through the guides, and these know them less where the noise is larger than the
@@ -153,6 +151,15 @@ Rings rings_for(double noise)
 	return noise < 0.35 ? Rings {3, 4} : Rings {3, 5};
 }
 
+// Rings of the height structures: more than those of the normals, since heights are steadier the
+// wider they reach, and wider the more noise hides the detail there is.
+int height_rings_for(double noise)
+{
+	if (noise < 0.11)
+		return 5;
+	return noise < 0.16 ? 6 : 7;
+}
+
 // Everything an iteration goes by.
 struct Plan {
 	/// How far the noise is taken as correlated, 0 to 1.
@@ -166,7 +173,7 @@ struct Plan {
 	double cos_threshold_increment = LEAST_INCREMENT;
 	double selection = SELECTION;
 	Rings rings = {2, 4};
-	int height_rings = HEIGHT_RINGS;
+	int height_rings = 5;
 };
 
 double strength_factor(Strength strength)
@@ -209,10 +216,12 @@ Plan plan_for(const DenoiseOptions& options, double noise, double correlation)
 	const Rings rings = rings_for(noise);
 	plan.rings.smallest = between(rings.smallest, SCANNER_RINGS, correlation);
 	plan.rings.largest = between(rings.largest, SCANNER_RINGS, correlation);
+	plan.height_rings = height_rings_for(noise);
 	if (options.structure_ring) {
+		plan.height_rings =
+			std::max(1, plan.height_rings + *options.structure_ring - plan.rings.largest);
 		plan.rings.largest = *options.structure_ring;
 		plan.rings.smallest = std::min(plan.rings.smallest, plan.rings.largest);
-		plan.height_rings = plan.rings.largest + 1;
 	}
 	plan.iterations = options.iterations.value_or(plan.iterations);
 	plan.vertex_iterations = options.vertex_iterations.value_or(plan.vertex_iterations);
@@ -351,7 +360,10 @@ private:
 	{
 		begin_phase(plan_.iterations - 1, 0.5, 0.8, "fitting heights");
 		HeightFilterOptions options;
-		options.smallest_ring = plan_.noise < NO_SINGLE_RINGS ? 1 : std::min(2, plan_.height_rings);
+		if (plan_.noise >= WIDE_STRUCTURES_NOISE) {
+			options.smallest_ring = std::min(2, plan_.height_rings);
+			options.faces_per_structure = FACES_PER_WIDE_STRUCTURE;
+		}
 		options.largest_ring = plan_.height_rings;
 		options.sigma = sigma_;
 		options.selection = HEIGHT_SELECTION;

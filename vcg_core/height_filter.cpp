@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "height_filter.h"
 
+#include "sampling.h"
 #include "scattered_polynomials.h"
 #include "structure_votes.h"
 #include "tangent_frame.h"
@@ -43,8 +44,9 @@ constexpr double LEAST_VARIANCE = 0.005;
 // Rings over which the change of the guides gives the axes.
 constexpr int RINGS_FOR_AXES = 2;
 
-// Structures of so many sizes are fitted side by side.
-constexpr int RINGS_AT_ONCE = static_cast<int>(LANES);
+// Numbers of rings tried, as far as the options allow them, beside the largest they allow: each has
+// about twice the vertices of the one before.
+constexpr std::array<int, 7> SIZES = {1, 2, 3, 5, 7, 10, 14};
 
 std::size_t at(Index index)
 {
@@ -89,14 +91,23 @@ struct Polynomial {
 /// Builds the structures of one patch after another, fits them and lets them vote.
 class Voter {
 public:
+	/// @param chosen #F flags of the faces with a structure
 	Voter(
-		const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options) :
+		const Workspace& workspace,
+		const HeightField& field,
+		const HeightFilterOptions& options,
+		const std::vector<std::uint8_t>& chosen) :
 			workspace_(workspace),
-			field_(field), options_(options),
+			field_(field), options_(options), chosen_(chosen),
 			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring)),
 			variance_(options.sigma * scale_ * options.sigma * scale_), member_ends_(at(options.largest_ring) + 1),
 			vertex_counts_(member_ends_.size()), vertex_group_ends_(member_ends_.size())
 	{
+		for (const int size : SIZES) {
+			if (size >= options.smallest_ring && size < options.largest_ring)
+				sizes_.push_back(size);
+		}
+		sizes_.push_back(options.largest_ring);
 	}
 	Voter(const Voter&) = delete;
 	Voter& operator=(const Voter&) = delete;
@@ -125,7 +136,7 @@ public:
 
 	void vote(Index i, std::vector<Point>& sums)
 	{
-		if (guides_[at(i)].isZero(0))
+		if (guides_[at(i)].isZero(0) || chosen_[at(patch_.mesh_faces()[at(i)])] == 0)
 			return;
 		find_members(i);
 		choose_axes(i);
@@ -231,32 +242,28 @@ private:
 		Choice choice;
 		Fit::Moments sums;
 		std::size_t group = 0;
-		for (int ring = options_.smallest_ring; ring <= options_.largest_ring;
-			 ring += RINGS_AT_ONCE) {
-			const int end = std::min(ring + RINGS_AT_ONCE, options_.largest_ring + 1);
+		for (std::size_t first = 0; first < sizes_.size(); first += LANES) {
+			const std::size_t end = std::min(first + LANES, sizes_.size());
 			std::array<ScatteredMoments<3, 1>, LANES> of_sizes;
-			for (int size = ring; size < end; ++size) {
-				for (; group < vertex_group_ends_[at(size)]; ++group) {
+			for (std::size_t k = first; k < end; ++k) {
+				for (; group < vertex_group_ends_[at(sizes_[k])]; ++group) {
 					const VertexGroup& vertices = groups_[group];
 					sums.add(vertices.x, vertices.y, {vertices.height}, vertices.weight);
 				}
-				add_up(sums, vertex_counts_[at(size)], of_sizes[at(size - ring)]);
+				add_up(sums, vertex_counts_[at(sizes_[k])], of_sizes[k - first]);
 			}
 			const Fit fitted(side_by_side(of_sizes));
 			const Slopes slopes(fitted);
 			choice.rings = 0;
 			bool goes_on = true;
-			for (int size = ring; size < end && goes_on; ++size) {
-				const std::size_t lane = at(size - ring);
-				goes_on = judge(of_sizes[lane], fitted, slopes, lane, size, choice);
-			}
-			if (choice.rings > 0) {
-				const std::size_t lane = at(choice.rings - ring);
+			for (std::size_t k = first; k < end && goes_on; ++k)
+				goes_on =
+					judge(of_sizes[k - first], fitted, slopes, k - first, sizes_[k], choice);
+			if (choice.rings > 0)
 				best = {
-					fitted.polynomial(choice.kept, choice.terms, lane),
+					fitted.polynomial(choice.kept, choice.terms, choice.lane),
 					1 / (choice.least_risk + LEAST_VARIANCE),
 					choice.rings};
-			}
 			if (!goes_on)
 				break;
 		}
@@ -278,6 +285,7 @@ private:
 		double least_risk = std::numeric_limits<double>::infinity();
 		std::uint32_t kept = 0;
 		std::size_t terms = 0;
+		std::size_t lane = 0;
 		/// 0: none of those fitted together last.
 		int rings = 0;
 	};
@@ -320,7 +328,7 @@ private:
 			slope_variance +
 			BIAS_SHARE * excess(moments, free > 0 ? residual / free : variance_);
 		if (risk < choice.least_risk)
-			choice = {risk, kept, terms, ring};
+			choice = {risk, kept, terms, lane, ring};
 		return risk <= HOPELESS * choice.least_risk;
 	}
 
@@ -379,9 +387,12 @@ private:
 	const Workspace& workspace_;
 	const HeightField& field_;
 	const HeightFilterOptions& options_;
+	const std::vector<std::uint8_t>& chosen_;
 	double scale_;
 	/// Of the noise, in scaled units.
 	double variance_;
+	/// Numbers of rings to try.
+	std::vector<int> sizes_;
 	Patch patch_;
 	std::vector<Point> guides_;
 	std::vector<Point> places_;
@@ -402,15 +413,34 @@ private:
 	Point bitangent_;
 };
 
+// Flags of about one in so many faces, whichever way the mesh lies and is numbered.
+std::vector<std::uint8_t>
+choose_faces(const Workspace& workspace, const std::vector<Point>& positions, int one_in)
+{
+	const std::vector<Face>& faces = workspace.mesh.faces;
+	if (one_in == 1)
+		return std::vector<std::uint8_t>(faces.size(), 1);
+	std::vector<double> sizes(faces.size());
+	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
+		sizes[i] = perimeter(positions, faces[i]);
+	});
+	std::vector<std::uint8_t> flags(faces.size(), 0);
+	for (const Index i : sample_by_value(sizes, workspace.mesh.face_count() / one_in))
+		flags[at(i)] = 1;
+	return flags;
+}
+
 } // namespace
 
 std::vector<Point> normals_from_heights(
 	const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options)
 {
+	const std::vector<std::uint8_t> chosen =
+		choose_faces(workspace, field.positions, options.faces_per_structure);
 	// A deque, since voters do not move.
 	std::deque<Voter> voters;
 	for (int worker = 0; worker < workspace.execution.threads(); ++worker)
-		voters.emplace_back(workspace, field, options);
+		voters.emplace_back(workspace, field, options, chosen);
 	std::vector<Point> result = sum_votes(workspace, voters);
 	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
 		const double length = result[i].norm();

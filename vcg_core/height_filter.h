@@ -22,9 +22,12 @@ struct HeightFilterOptions {
 	/// Faces are similar where the cosine of their guide directions is above this.
 	double cos_threshold = 0.9;
 	/// A structure reaches over this many rings of faces to that many; each face takes the number
-	/// with the least risk.
+	/// with the least risk, of a few that grow like powers.
 	int smallest_ring = 1;
 	int largest_ring = 5;
+	/// One in so many faces, chosen by its shape, gets a structure of its own; the others take what
+	/// these vote. 1 or more.
+	int faces_per_structure = 1;
 	/// Standard deviation of the noise of the positions along the normal, the caller's length unit.
 	double sigma = 0;
 	/// A coefficient beyond the plane is kept where its energy exceeds this many noise variances.

@@ -413,21 +413,14 @@ private:
 	Point bitangent_;
 };
 
-// Flags of about one in so many faces, whichever way the mesh lies and is numbered.
-std::vector<std::uint8_t>
-choose_faces(const Workspace& workspace, const std::vector<Point>& positions, int one_in)
+// Sizes of the faces by which some of them are chosen.
+std::vector<double> perimeters(const Workspace& workspace, const std::vector<Point>& positions)
 {
-	const std::vector<Face>& faces = workspace.mesh.faces;
-	if (one_in == 1)
-		return std::vector<std::uint8_t>(faces.size(), 1);
-	std::vector<double> sizes(faces.size());
+	std::vector<double> sizes(workspace.mesh.faces.size());
 	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
-		sizes[i] = perimeter(positions, faces[i]);
+		sizes[i] = perimeter(positions, workspace.mesh.faces[i]);
 	});
-	std::vector<std::uint8_t> flags(faces.size(), 0);
-	for (const Index i : sample_by_value(sizes, workspace.mesh.face_count() / one_in))
-		flags[at(i)] = 1;
-	return flags;
+	return sizes;
 }
 
 } // namespace
@@ -436,7 +429,7 @@ std::vector<Point> normals_from_heights(
 	const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options)
 {
 	const std::vector<std::uint8_t> chosen =
-		choose_faces(workspace, field.positions, options.faces_per_structure);
+		choose_by_value(perimeters(workspace, field.positions), options.faces_per_structure);
 	// A deque, since voters do not move.
 	std::deque<Voter> voters;
 	for (int worker = 0; worker < workspace.execution.threads(); ++worker)

@@ -279,8 +279,14 @@ std::size_t degree_for(int members)
 /// Fits the structures and lets them vote.
 class Voter {
 public:
-	Voter(Structures& structures, const NormalFilterOptions& options, const Variances& floors) :
-			structures_(structures), options_(options), floors_(floors)
+	/// @param chosen #F flags of the faces with a structure
+	Voter(
+		Structures& structures,
+		const NormalFilterOptions& options,
+		const Variances& floors,
+		const std::vector<std::uint8_t>& chosen) :
+			structures_(structures),
+			options_(options), floors_(floors), chosen_(chosen)
 	{
 	}
 
@@ -289,6 +295,8 @@ public:
 
 	void vote(Index i, std::vector<Point>& sums)
 	{
+		if (chosen_[at(patch().mesh_faces()[at(i)])] == 0)
+			return;
 		Polynomial best;
 		Choice choice;
 		structures_.for_each_fit(i, [&](const Fit& fitted, int ring, int end) {
@@ -359,6 +367,7 @@ private:
 	Structures& structures_;
 	const NormalFilterOptions& options_;
 	const Variances& floors_;
+	const std::vector<std::uint8_t>& chosen_;
 };
 
 // The noise variance of the data, as structures of each size see it.
@@ -423,9 +432,11 @@ std::vector<Point> filter_normals(
 	workspace.execution.begin_part(0, 16);
 	const Variances floors = measure_noise_floors(workspace, field, options, structures);
 	workspace.execution.begin_part(1, 16, 15);
+	const std::vector<std::uint8_t> chosen =
+		choose_by_value(field.weights, options.faces_per_structure);
 	std::vector<Voter> voters;
 	for (Structures& own : structures)
-		voters.emplace_back(own, options, floors);
+		voters.emplace_back(own, options, floors, chosen);
 	std::vector<Point> result = sum_votes(workspace, voters);
 	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
 		const double length = result[i].norm();

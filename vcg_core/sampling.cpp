@@ -38,6 +38,16 @@ std::vector<Index> sample_by_value(const std::vector<double>& values, Index want
 	return sample;
 }
 
+std::vector<std::uint8_t> choose_by_value(const std::vector<double>& values, int one_in)
+{
+	if (one_in == 1)
+		return std::vector<std::uint8_t>(values.size(), 1);
+	std::vector<std::uint8_t> flags(values.size(), 0);
+	for (const Index i : sample_by_value(values, static_cast<Index>(values.size()) / one_in))
+		flags[static_cast<std::size_t>(i)] = 1;
+	return flags;
+}
+
 double quantile(std::vector<double>& values, double share)
 {
 	if (values.empty())

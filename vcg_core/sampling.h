@@ -3,6 +3,7 @@
 
 #include "triangle_mesh.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace orthopoly {
@@ -13,6 +14,9 @@ namespace orthopoly {
 /// with its faces in another order gives the same sample: the value's digits serve as the dice.
 /// @param values positive numbers, one an item
 std::vector<Index> sample_by_value(const std::vector<double>& values, Index wanted);
+
+/// Flags of about one item in so many, chosen in the same way; of all for one in one.
+std::vector<std::uint8_t> choose_by_value(const std::vector<double>& values, int one_in);
 
 /// The value below which that share (0 to 1) of the values lies; zero for none. Reorders them.
 double quantile(std::vector<double>& values, double share);

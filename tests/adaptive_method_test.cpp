@@ -135,8 +135,7 @@ TEST_CASE("Open boundaries keep their outline", "[adaptive_method]")
 		const TriangleMesh truth = make_flat_grid(n);
 		const TriangleMesh mesh = noisy(truth, sigma);
 		const std::vector<Point> found = run(mesh).positions;
-		const std::vector<std::uint8_t> boundary =
-			edge_defects(mesh).boundary;
+		const std::vector<std::uint8_t> boundary = edge_defects(mesh).boundary;
 		double inwards = 0;
 		double height_before = 0;
 		double height_after = 0;

@@ -108,7 +108,9 @@ TEST_CASE("the boundary of an open mesh", "[adjacency]")
 	// Four squares around an inner vertex.
 	const std::vector<Face> grid = {
 		{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {3, 4, 7}, {3, 7, 6}, {4, 5, 8}, {4, 8, 7}};
-	CHECK(edge_defects(with_faces(9, grid)).boundary == std::vector<std::uint8_t> {1, 1, 1, 1, 0, 1, 1, 1, 1});
+	CHECK(
+		edge_defects(with_faces(9, grid)).boundary ==
+		std::vector<std::uint8_t> {1, 1, 1, 1, 0, 1, 1, 1, 1});
 }
 
 TEST_CASE("an edge of three faces is as little an inner one as an edge of one", "[adjacency]")

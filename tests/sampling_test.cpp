@@ -116,6 +116,23 @@ TEST_CASE("Values all alike are all taken", "[sampling]")
 	CHECK(sample_by_value(std::vector<double>(20000, 0.0), 2500).size() == 20000);
 }
 
+TEST_CASE("About one in so many is chosen", "[sampling]")
+{
+	std::mt19937 generator(2);
+	std::vector<double> values(20000);
+	for (double& value : values)
+		value = 1 + static_cast<double>(generator()) * 0x1p-32;
+	for (const int one_in : {1, 2, 3}) {
+		const std::vector<std::uint8_t> flags = choose_by_value(values, one_in);
+		REQUIRE(flags.size() == values.size());
+		CHECK(
+			static_cast<double>(std::count(flags.begin(), flags.end(), 1)) ==
+			Approx(20000.0 / one_in).epsilon(0.05));
+	}
+	const std::vector<std::uint8_t> all(100, 1);
+	CHECK(choose_by_value(std::vector<double>(100, 2.5), 2) == all);
+}
+
 TEST_CASE("A quantile has that share of the values below it", "[sampling]")
 {
 	std::vector<double> values(101);

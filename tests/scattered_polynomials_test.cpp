@@ -72,8 +72,7 @@ public:
 	double energy(std::size_t term) const { return fit_.energy(term); }
 	Value coefficients(std::size_t term) const
 	{
-		return {
-			fit_.coefficient(term, 0), fit_.coefficient(term, 1), fit_.coefficient(term, 2)};
+		return {fit_.coefficient(term, 0), fit_.coefficient(term, 1), fit_.coefficient(term, 2)};
 	}
 	typename Fit::Coefficients polynomial(std::uint32_t kept) const
 	{
@@ -426,7 +425,8 @@ TEST_CASE("Moments may be added to between fits", "[scattered_polynomials]")
 	check(nodes);
 }
 
-TEST_CASE("Structures fitted side by side come out as alone, bit for bit", "[scattered_polynomials]")
+TEST_CASE(
+	"Structures fitted side by side come out as alone, bit for bit", "[scattered_polynomials]")
 {
 	// One of them has too few nodes, one none.
 	const std::array<int, LANES> counts = {40, 7, 0, 23};

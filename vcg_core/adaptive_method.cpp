@@ -242,8 +242,8 @@ void record(const Plan& plan, DenoiseOptions& resolved)
 }
 
 // The normals to fit: the prefiltered original's, blended with the current ones by area.
-NormalField normal_field(
-	const FaceGeometry& original, const FaceGeometry& current, Execution& execution)
+NormalField
+normal_field(const FaceGeometry& original, const FaceGeometry& current, Execution& execution)
 {
 	NormalField field;
 	field.guides = current.normals;
@@ -354,7 +354,8 @@ private:
 		options.selection = plan_.selection;
 		if (plan_.noise >= WIDE_STRUCTURES_NOISE && iteration + 1 < plan_.iterations)
 			options.faces_per_structure = FACES_PER_WIDE_STRUCTURE;
-		return filter_normals(workspace_, normal_field(original, current, workspace_.execution), options);
+		return filter_normals(
+			workspace_, normal_field(original, current, workspace_.execution), options);
 	}
 
 	// Takes the normals from the measured heights instead, as far as it is clear which faces go
@@ -434,8 +435,7 @@ void run_adaptive_method(
 		correlation = measure_noise_correlation(workspace, workspace.mesh.positions).certainty();
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
 	TriangleMesh mesh;
-	const double outliers =
-		correlation < 1 ? put_outliers_back(workspace, levels, mesh) : 0;
+	const double outliers = correlation < 1 ? put_outliers_back(workspace, levels, mesh) : 0;
 	result.estimated_noise = levels.flat + outliers * (levels.ordinary - levels.flat);
 	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
 	result.resolved.noise_type = correlation > 0.5 ? NoiseType::Scanner : NoiseType::White;

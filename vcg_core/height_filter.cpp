@@ -62,7 +62,8 @@ struct VertexGroup {
 };
 
 // From a center to four of some points.
-std::array<Lanes, 3> offsets(const std::vector<Point>& points, const Index* four, const Point& center)
+std::array<Lanes, 3>
+offsets(const std::vector<Point>& points, const Index* four, const Point& center)
 {
 	const Point& first = points[at(four[0])];
 	const Point& second = points[at(four[1])];
@@ -100,8 +101,9 @@ public:
 			workspace_(workspace),
 			field_(field), options_(options), chosen_(chosen),
 			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring)),
-			variance_(options.sigma * scale_ * options.sigma * scale_), member_ends_(at(options.largest_ring) + 1),
-			vertex_counts_(member_ends_.size()), vertex_group_ends_(member_ends_.size())
+			variance_(options.sigma * scale_ * options.sigma * scale_),
+			member_ends_(at(options.largest_ring) + 1), vertex_counts_(member_ends_.size()),
+			vertex_group_ends_(member_ends_.size())
 	{
 		for (const int size : SIZES) {
 			if (size >= options.smallest_ring && size < options.largest_ring)
@@ -148,10 +150,7 @@ public:
 	}
 
 private:
-	std::size_t members_within(int ring) const
-	{
-		return member_ends_[at(ring)];
-	}
+	std::size_t members_within(int ring) const { return member_ends_[at(ring)]; }
 
 	// The similar faces around a face.
 	void find_members(Index i)
@@ -168,8 +167,7 @@ private:
 			for (; k < patch_.count_within(ring); ++k) {
 				const Index j = faces[k];
 				members[end] = j;
-				end += static_cast<std::size_t>(
-					guide.dot(guides[j]) > options_.cos_threshold);
+				end += static_cast<std::size_t>(guide.dot(guides[j]) > options_.cos_threshold);
 			}
 			member_ends_[at(ring)] = end;
 		}
@@ -231,7 +229,9 @@ private:
 			group.x = dot(offset, tangent);
 			group.y = dot(offset, bitangent);
 			group.height = dot(offset, guide);
-			const auto weight = [&](std::size_t lane) { return vertices[lane] == nobody ? 0.0 : 1.0; };
+			const auto weight = [&](std::size_t lane) {
+				return vertices[lane] == nobody ? 0.0 : 1.0;
+			};
 			group.weight = Lanes({weight(0), weight(1), weight(2), weight(3)});
 		}
 	}
@@ -257,8 +257,7 @@ private:
 			choice.rings = 0;
 			bool goes_on = true;
 			for (std::size_t k = first; k < end && goes_on; ++k)
-				goes_on =
-					judge(of_sizes[k - first], fitted, slopes, k - first, sizes_[k], choice);
+				goes_on = judge(of_sizes[k - first], fitted, slopes, k - first, sizes_[k], choice);
 			if (choice.rings > 0)
 				best = {
 					fitted.polynomial(choice.kept, choice.terms, choice.lane),
@@ -325,8 +324,7 @@ private:
 			}
 		}
 		const double risk =
-			slope_variance +
-			BIAS_SHARE * excess(moments, free > 0 ? residual / free : variance_);
+			slope_variance + BIAS_SHARE * excess(moments, free > 0 ? residual / free : variance_);
 		if (risk < choice.least_risk)
 			choice = {risk, kept, terms, lane, ring};
 		return risk <= HOPELESS * choice.least_risk;
@@ -377,10 +375,10 @@ private:
 								 square_root(Lanes(1) + slope_x * slope_x + slope_y * slope_y);
 			std::array<Lanes, 3> vote;
 			for (std::size_t component = 0; component < 3; ++component)
-				vote[component] = factor * (axes[0][component] - slope_x * axes[1][component] - slope_y * axes[2][component]);
+				vote[component] = factor * (axes[0][component] - slope_x * axes[1][component] -
+											slope_y * axes[2][component]);
 			for (std::size_t lane = 0; lane < LANES; ++lane)
-				sums[at(members_[k + lane])] +=
-					Point(vote[0][lane], vote[1][lane], vote[2][lane]);
+				sums[at(members_[k + lane])] += Point(vote[0][lane], vote[1][lane], vote[2][lane]);
 		}
 	}
 

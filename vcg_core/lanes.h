@@ -49,8 +49,7 @@ inline LanePair operator/(LanePair a, LanePair b)
 }
 inline LanePair where_positive(LanePair condition, LanePair then, LanePair otherwise)
 {
-	return {
-		{condition[0] > 0 ? then[0] : otherwise[0], condition[1] > 0 ? then[1] : otherwise[1]}};
+	return {{condition[0] > 0 ? then[0] : otherwise[0], condition[1] > 0 ? then[1] : otherwise[1]}};
 }
 
 #endif

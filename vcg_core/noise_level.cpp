@@ -84,9 +84,7 @@ double clean_edge_length(
 		return 0;
 	const double relative = sigma / smoothed;
 	return std::max(
-		smoothed,
-		mean_edge_length(workspace, flattened) /
-			(1 + LENGTHENING * relative * relative));
+		smoothed, mean_edge_length(workspace, flattened) / (1 + LENGTHENING * relative * relative));
 }
 
 } // namespace

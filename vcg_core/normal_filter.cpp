@@ -151,8 +151,8 @@ public:
 					vote[c] += coefficients[term][c] * terms[term];
 			}
 			const Lanes squares = vote[0] * vote[0] + vote[1] * vote[1] + vote[2] * vote[2];
-			const Lanes factor = where_positive(
-				squares, Lanes(polynomial.weight) / square_root(squares), Lanes(0));
+			const Lanes factor =
+				where_positive(squares, Lanes(polynomial.weight) / square_root(squares), Lanes(0));
 			for (std::size_t c = 0; c < 3; ++c)
 				vote[c] *= factor;
 			for (std::size_t lane = 0; lane < LANES; ++lane)
@@ -208,8 +208,7 @@ private:
 	void choose_axes(Index i)
 	{
 		TangentFrame frame(observations_[at(i)].guide);
-		const std::size_t end =
-			LANES * group_ends_[at(options_.smallest_ring)];
+		const std::size_t end = LANES * group_ends_[at(options_.smallest_ring)];
 		for (std::size_t k = 0; k < end; ++k) {
 			const Observation& member = observations_[at(members_[k])];
 			frame.observe(member.data, member.weight);
@@ -230,7 +229,8 @@ private:
 			const Observation& third = observations_[at(members[2])];
 			const Observation& fourth = observations_[at(members[3])];
 			const auto lanes = [&](auto value_of) {
-				return Lanes({value_of(first), value_of(second), value_of(third), value_of(fourth)});
+				return Lanes(
+					{value_of(first), value_of(second), value_of(third), value_of(fourth)});
 			};
 			Group& group = groups_[k];
 			group.x = Lanes(0);

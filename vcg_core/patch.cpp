@@ -119,8 +119,7 @@ void Patch::add_face(const Workspace& workspace, Index mesh_face, bool with_surr
 
 void Patch::link_faces()
 {
-	const IndexLists lists =
-		vertex_faces(static_cast<Index>(mesh_vertices_.size()), faces_);
+	const IndexLists lists = vertex_faces(static_cast<Index>(mesh_vertices_.size()), faces_);
 	const auto nobody = static_cast<Index>(faces_.size());
 	FaceBlock empty;
 	empty.fill(nobody);

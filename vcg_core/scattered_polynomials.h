@@ -118,7 +118,10 @@ side_by_side(const std::array<ScatteredMoments<Degree, Components>, LANES>& mome
 {
 	const auto gather = [&](auto value_of) {
 		return Lanes(
-			{value_of(moments[0]), value_of(moments[1]), value_of(moments[2]), value_of(moments[3])});
+			{value_of(moments[0]),
+			 value_of(moments[1]),
+			 value_of(moments[2]),
+			 value_of(moments[3])});
 	};
 	ScatteredMoments<Degree, Components, Lanes> result;
 	for (std::size_t k = 0; k < result.powers.size(); ++k)
@@ -171,7 +174,8 @@ public:
 	{
 		const Scalar has_weight = moments.weight();
 		const Scalar scale = where_positive(
-			has_weight, moments.count / where_positive(has_weight, has_weight, Scalar(1)),
+			has_weight,
+			moments.count / where_positive(has_weight, has_weight, Scalar(1)),
 			Scalar(0));
 		factorise(moments, scale);
 		total_ = moments.energy * scale;
@@ -209,7 +213,10 @@ public:
 		return lane_of(coefficients_[term][component], lane);
 	}
 	/// Sum of squares a polynomial's coefficients stand for.
-	double energy(std::size_t term, std::size_t lane = 0) const { return lane_of(energies_[term], lane); }
+	double energy(std::size_t term, std::size_t lane = 0) const
+	{
+		return lane_of(energies_[term], lane);
+	}
 	/// Sum of squares that the first terms together leave over.
 	double residual(std::size_t terms, std::size_t lane = 0) const
 	{
@@ -281,7 +288,8 @@ private:
 				pivot -= lower_[row][j] * lower_[row][j];
 			const Scalar excess = pivot - Scalar(LEAST_PIVOT) * diagonal;
 			inverse_[row] = where_positive(
-				excess, Scalar(1) / square_root(where_positive(excess, pivot, Scalar(1))),
+				excess,
+				Scalar(1) / square_root(where_positive(excess, pivot, Scalar(1))),
 				Scalar(0));
 		}
 	}

@@ -42,8 +42,8 @@ struct FaceGeometry {
 	FaceGeometry() = default;
 	explicit FaceGeometry(std::size_t face_count);
 	/// Fills in face `i`.
-	void measure(
-		const std::vector<Point>& positions, const std::vector<Face>& faces, std::size_t i);
+	void
+	measure(const std::vector<Point>& positions, const std::vector<Face>& faces, std::size_t i);
 };
 
 /// Throws InvalidMesh where a face names a vertex that is not there or a coordinate is not

@@ -6,8 +6,12 @@
 #include "closest_point.h"
 #include "denoise.h"
 #include "guide_direction.h"
+#include "height_filter.h"
 #include "noise.h"
 #include "noise_level.h"
+#include "normal_filter.h"
+#include "numbering.h"
+#include "patch.h"
 #include "polynomial_fit.h"
 #include "prefilter.h"
 #include "recipes.h"
@@ -94,6 +98,47 @@ void two_rings(benchmark::State& state)
 	});
 }
 
+void numbering(benchmark::State& state)
+{
+	time(state, [](Fixture& f) {
+		benchmark::DoNotOptimize(number_by_place(f.mesh, f.execution).faces.data());
+	});
+}
+
+void patches(benchmark::State& state)
+{
+	time(state, [](Fixture& f) {
+		Patch patch;
+		for (Index number = 0; number < Patch::count(*f.workspace); ++number) {
+			patch.build(*f.workspace, number, 4);
+			for (Index face = 0; face < patch.own_faces(); ++face)
+				patch.collect(face, 4);
+		}
+		benchmark::DoNotOptimize(patch.collected().begin());
+	});
+}
+
+void adaptive_normal_filter(benchmark::State& state)
+{
+	time(state, [](Fixture& f) {
+		const NormalField field = {
+			f.geometry.normals, f.geometry.normals, f.geometry.areas, f.geometry.centroids};
+		benchmark::DoNotOptimize(filter_normals(*f.workspace, field, NormalFilterOptions()).data());
+	});
+}
+
+void height_filter(benchmark::State& state)
+{
+	time(state, [](Fixture& f) {
+		HeightFilterOptions options;
+		options.sigma = 0.1 * f.workspace->mean_edge_length;
+		benchmark::DoNotOptimize(
+			normals_from_heights(
+				*f.workspace, {f.geometry.normals, f.geometry.centroids, f.mesh.positions}, options)
+				.data());
+	});
+}
+
 void noise_level(benchmark::State& state)
 {
 	time(state, [](Fixture& f) {
@@ -172,8 +217,12 @@ void whole_method(benchmark::State& state)
 STEP(connectivity);
 STEP(normals);
 STEP(two_rings);
+STEP(numbering);
+STEP(patches);
 STEP(noise_level);
 STEP(taubin_pairs);
+STEP(adaptive_normal_filter);
+STEP(height_filter);
 STEP(guides);
 STEP(structures);
 STEP(paper_normal_filter);

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "patch.h"
+
+#include "recipes.h"
+#include "shapes.h"
+#include "step_fixture.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+#include <vector>
+
+using namespace orthopoly;
+
+namespace {
+
+std::size_t at(Index index)
+{
+	return static_cast<std::size_t>(index);
+}
+
+// The mesh's numbers of what lies within a ring.
+std::set<Index> within(const IndexSpan& faces, std::size_t count, const std::vector<Index>& numbers)
+{
+	std::set<Index> result;
+	for (std::size_t k = 0; k < count; ++k)
+		result.insert(numbers.empty() ? faces[k] : numbers[at(faces[k])]);
+	return result;
+}
+
+void check_rings(const Workspace& workspace, int rings)
+{
+	RingCollector expected = workspace.ring_collector();
+	Patch patch;
+	Index own = 0;
+	for (Index number = 0; number < Patch::count(workspace); ++number) {
+		patch.build(workspace, number, rings);
+		CAPTURE(number);
+		for (std::size_t i = 0; i < patch.faces().size(); ++i) {
+			for (std::size_t k = 0; k < 3; ++k)
+				REQUIRE(
+					patch.mesh_vertices()[at(patch.faces()[i][k])] ==
+					workspace.mesh.faces[at(patch.mesh_faces()[i])][k]);
+		}
+		for (Index face = 0; face < patch.own_faces(); ++face, ++own) {
+			REQUIRE(patch.mesh_faces()[at(face)] == own);
+			// Every other time twice, since the first leaves its marks.
+			for (int time = 0; time <= face % 2; ++time)
+				patch.collect(face, rings);
+			expected.collect(own, rings);
+			for (int ring = 0; ring <= rings; ++ring) {
+				REQUIRE(patch.count_within(ring) == expected.count_within(ring));
+				REQUIRE(
+					within(patch.collected(), patch.count_within(ring), patch.mesh_faces()) ==
+					within(expected.faces(), expected.count_within(ring), {}));
+			}
+		}
+	}
+	CHECK(own == workspace.mesh.face_count());
+}
+
+} // namespace
+
+TEST_CASE("Rings inside a patch are those of the mesh", "[patch]")
+{
+	for (const Recipe& recipe : recipes()) {
+		CAPTURE(recipe.name);
+		const TriangleMesh mesh = recipe.make(1200);
+		if (mesh.face_count() > 3000)
+			continue;
+		const StepFixture f(mesh);
+		check_rings(f.workspace, 3);
+	}
+}
+
+TEST_CASE("Patches of a mesh that is cut up keep their surroundings", "[patch]")
+{
+	const StepFixture f(make_torus(3 * Patch::OWN_FACES));
+	CHECK(Patch::count(f.workspace) > 2);
+	check_rings(f.workspace, 2);
+}
+
+TEST_CASE("More faces may meet in a vertex than a patch takes at once", "[patch]")
+{
+	TriangleMesh fan;
+	fan.positions.emplace_back(0, 0, 1);
+	const Index rim = 37;
+	for (Index i = 0; i < rim; ++i) {
+		fan.positions.emplace_back(std::cos(i), std::sin(i), 0);
+		fan.faces.push_back({0, 1 + i, 1 + (i + 1) % rim});
+	}
+	const StepFixture f(fan);
+	check_rings(f.workspace, 2);
+}

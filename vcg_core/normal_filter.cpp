@@ -435,6 +435,7 @@ std::vector<Point> filter_normals(
 	const std::vector<std::uint8_t> chosen =
 		choose_by_value(field.weights, options.faces_per_structure);
 	std::vector<Voter> voters;
+	voters.reserve(structures.size());
 	for (Structures& own : structures)
 		voters.emplace_back(own, options, floors, chosen);
 	std::vector<Point> result = sum_votes(workspace, voters);

@@ -91,7 +91,7 @@ DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& options, P
 	try {
 		Execution execution(options.threads, progress);
 		result.resolved.threads = execution.threads();
-		execution.begin_phase(0, 0.01, "reading the mesh");
+		execution.begin_phase(0, 0.005, "reading the mesh");
 		result.degenerate_faces = count_degenerate_faces(mesh, execution);
 		if (result.degenerate_faces == mesh.face_count())
 			throw InvalidMesh(
@@ -101,6 +101,7 @@ DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& options, P
 		const Numbering numbering =
 			method.any_order ? number_by_place(mesh, execution) : same_numbering(mesh);
 		const Point origin = method.any_order ? mesh.positions.front() : Point(Point::Zero());
+		execution.begin_phase(0.005, 0.01, "reading the mesh");
 		TriangleMesh prepared = renumbered(mesh, numbering, origin);
 		// A cancel is heard between any two of these steps.
 		execution.begin_phase(0.01, 0.03, "finding neighbours");

@@ -126,13 +126,13 @@ public:
 			places_.push_back(field_.nodes[at(i)]);
 		}
 		// Fills up groups of members.
-		guides_.push_back(Point::Zero());
-		places_.push_back(Point::Zero());
+		guides_.emplace_back(Point::Zero());
+		places_.emplace_back(Point::Zero());
 		positions_.clear();
 		for (const Index i : patch_.mesh_vertices())
 			positions_.push_back(field_.positions[at(i)]);
 		// The same for groups of vertices.
-		positions_.push_back(Point::Zero());
+		positions_.emplace_back(Point::Zero());
 		stamps_.assign(positions_.size(), -1);
 	}
 

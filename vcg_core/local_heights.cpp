@@ -98,9 +98,9 @@ bool LocalHeights::fit(Index vertex, int rings)
 	if (cholesky.info() != Eigen::Success || !(cholesky.rcond() > LEAST_CONDITION))
 		return false;
 	cholesky.matrixL().solveInPlace(basis_);
-	const Eigen::Matrix<double, TERMS, 1> coefficients = basis_ * heights_;
+	const Eigen::Matrix<double, TERMS, 1> coefficients = basis_.lazyProduct(heights_);
 	residual_ = heights_;
-	residual_.noalias() -= basis_.transpose() * coefficients;
+	residual_ -= basis_.transpose().lazyProduct(coefficients);
 	return true;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "local_heights.h"
 
+#include "prefilter.h"
 #include "sampling.h"
 
 #include <Eigen/Cholesky>
@@ -18,8 +19,8 @@ constexpr std::size_t FEWEST_FREE = 4;
 // Nodes on a line, or on a conic's worth of coincidences, do not fix a cubic.
 constexpr double LEAST_CONDITION = 1e-10;
 
-// Deviation of a normal distribution over the median of its absolute values.
-constexpr double DEVIATION_PER_MEDIAN = 1.4826;
+// Taubin pairs of the surface below the heights.
+constexpr double SMOOTHING_PAIRS = 4;
 
 std::size_t at(Index index)
 {
@@ -52,6 +53,14 @@ void VertexRings::collect(Index vertex, int rings)
 	}
 }
 
+std::vector<Point>
+surface_below_heights(const Workspace& workspace, const std::vector<Point>& positions)
+{
+	std::vector<Point> smooth = positions;
+	taubin_smooth(workspace, SMOOTHING_PAIRS, smooth);
+	return smooth;
+}
+
 LocalHeights::LocalHeights(
 	const Workspace& workspace, const std::vector<Point>& noisy, const std::vector<Point>& smooth) :
 		workspace_(workspace),
@@ -61,10 +70,7 @@ LocalHeights::LocalHeights(
 
 bool LocalHeights::fit(Index vertex, int rings)
 {
-	Point normal = Point::Zero();
-	const IndexLists& around = workspace_.vertex_faces;
-	for (const Index* face = around.begin(vertex); face != around.end(vertex); ++face)
-		normal += face_cross_product(smooth_, workspace_.mesh.faces[at(*face)]);
+	Point normal = cross_product_around(workspace_, smooth_, vertex);
 	const double length = normal.norm();
 	rings_.collect(vertex, rings);
 	const std::vector<Index>& ring = rings_.vertices();

@@ -32,6 +32,11 @@ private:
 	std::vector<Index> vertices_;
 };
 
+/// The surface that heights are measured from: that of the positions, smoothed until normals of a
+/// mesh with noise of half an edge length are steady. #V.
+std::vector<Point>
+surface_below_heights(const Workspace& workspace, const std::vector<Point>& positions);
+
 /// Cubic height polynomials fitted around vertices, one at a time, and what they leave of the
 /// heights: noise where the surface is smooth. Ten terms are the fewest that take ordinary
 /// curvature and its change out of the residual. Keeps scratch memory, so use one object a thread.

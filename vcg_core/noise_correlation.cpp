@@ -2,7 +2,6 @@
 #include "noise_correlation.h"
 
 #include "local_heights.h"
-#include "prefilter.h"
 #include "sampling.h"
 
 #include <Eigen/Cholesky>
@@ -61,9 +60,6 @@ constexpr Index SAMPLES = 1500;
 // But a mesh that has fewer has no place where the wide ones do not see everything.
 constexpr std::size_t FEWEST_SAMPLES = 100;
 
-// Taubin pairs that give the frame of the heights.
-constexpr double SMOOTHING_PAIRS = 4;
-
 constexpr Index GRAIN = 32;
 
 /// What is measured around a vertex; negative variances where there is no polynomial.
@@ -113,8 +109,7 @@ measure_noise_correlation(const Workspace& workspace, const std::vector<Point>& 
 	result.view_irregularity = irregularity_of_view(positions, workspace.mesh.faces);
 	if (ONE_VIEW(result.view_irregularity) == 0)
 		return result;
-	std::vector<Point> smooth = positions;
-	taubin_smooth(workspace, SMOOTHING_PAIRS, smooth);
+	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
 	const std::vector<Index> sample = sample_by_value(areas_around(workspace, positions), SAMPLES);
 	std::vector<Residuals> found(sample.size());
 	std::vector<LocalHeights> heights(

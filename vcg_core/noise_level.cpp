@@ -2,7 +2,6 @@
 #include "noise_level.h"
 
 #include "local_heights.h"
-#include "prefilter.h"
 #include "sampling.h"
 
 #include <algorithm>
@@ -28,9 +27,6 @@ constexpr Quantile ORDINARY = {0.5, 0};
 
 // The quantile of so many variances is steady to about one per cent.
 constexpr Index SAMPLES = 20000;
-
-// Taubin pairs after which the normals of a mesh with noise of half an edge length are steady.
-constexpr double SMOOTHING_PAIRS = 4;
 
 // Polynomials that tell the kind of noise: wide ones, since narrow ones follow an outlier, and a
 // few, since they are slow.
@@ -68,13 +64,8 @@ double clean_edge_length(
 	double sigma)
 {
 	std::vector<Point> flattened = noisy;
-	const IndexLists& around = workspace.vertex_faces;
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		const auto vertex = static_cast<Index>(i);
-		Point normal = Point::Zero();
-		for (const Index* face = around.begin(vertex); face != around.end(vertex); ++face)
-			normal +=
-				face_cross_product(smooth, workspace.mesh.faces[static_cast<std::size_t>(*face)]);
+		const Point normal = cross_product_around(workspace, smooth, static_cast<Index>(i));
 		const double square = normal.squaredNorm();
 		if (square > 0)
 			flattened[i] += (smooth[i] - noisy[i]).dot(normal) / square * normal;
@@ -91,8 +82,7 @@ double clean_edge_length(
 
 NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions)
 {
-	std::vector<Point> smooth = positions;
-	taubin_smooth(workspace, SMOOTHING_PAIRS, smooth);
+	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
 	const std::vector<Index> sample = sample_by_value(areas_around(workspace, positions), SAMPLES);
 	struct Variance {
 		double value = -1;

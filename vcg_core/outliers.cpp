@@ -2,7 +2,6 @@
 #include "outliers.h"
 
 #include "local_heights.h"
-#include "prefilter.h"
 #include "sampling.h"
 
 #include <Eigen/Cholesky>
@@ -49,9 +48,6 @@ constexpr double FURTHEST = 4;
 // nothing is put back.
 constexpr double LEAST_COSINE = 0.5;
 
-// Deviation of a normal distribution over the median of its absolute values.
-constexpr double DEVIATION_PER_MEDIAN = 1.4826;
-
 // No deviation is less than this, in mean edge lengths, so that an exact surface has no outliers.
 constexpr double LEAST_DEVIATION = 0.01;
 
@@ -62,9 +58,6 @@ constexpr double OUTLIER_WEIGHT = 0.1;
 
 // Umbrella steps that centre outliers among their neighbours, across the normal.
 constexpr int CENTERING_STEPS = 5;
-
-// Taubin pairs that give the frame of the heights.
-constexpr double SMOOTHING_PAIRS = 4;
 
 constexpr Index GRAIN = 256;
 
@@ -146,20 +139,14 @@ private:
 	// What heights are measured from, read off the positions as they are now.
 	void frame()
 	{
-		smooth_ = positions_;
-		taubin_smooth(workspace_, SMOOTHING_PAIRS, smooth_);
+		smooth_ = surface_below_heights(workspace_, positions_);
 		edge_ = mean_edge_length(workspace_, smooth_);
-		normals_.assign(positions_.size(), Point::Zero());
-		for (const Face& face : workspace_.mesh.faces) {
-			const Point cross = face_cross_product(smooth_, face);
-			for (const Index corner : face)
-				normals_[at(corner)] += cross;
-		}
-		for (Point& normal : normals_) {
-			const double length = normal.norm();
-			if (length > 0)
-				normal /= length;
-		}
+		normals_.resize(positions_.size());
+		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
+			const Point sum = cross_product_around(workspace_, smooth_, static_cast<Index>(i));
+			const double length = sum.norm();
+			normals_[i] = length > 0 ? Point(sum / length) : sum;
+		});
 	}
 
 	template<class Body>

@@ -18,6 +18,9 @@ std::vector<Index> sample_by_value(const std::vector<double>& values, Index want
 /// Flags of about one item in so many, chosen in the same way; of all for one in one.
 std::vector<std::uint8_t> choose_by_value(const std::vector<double>& values, int one_in);
 
+/// Deviation of a normal distribution over the median of its absolute values.
+constexpr double DEVIATION_PER_MEDIAN = 1.4826;
+
 /// The value below which that share (0 to 1) of the values lies; zero for none. Reorders them.
 double quantile(std::vector<double>& values, double share);
 

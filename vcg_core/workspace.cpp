@@ -19,14 +19,22 @@ Workspace::Workspace(const TriangleMesh& given_mesh, Execution& given_execution)
 {
 }
 
+Point cross_product_around(
+	const Workspace& workspace, const std::vector<Point>& positions, Index vertex)
+{
+	Point sum = Point::Zero();
+	const Index* const last = workspace.vertex_faces.end(vertex);
+	for (const Index* face = workspace.vertex_faces.begin(vertex); face != last; ++face)
+		sum += face_cross_product(positions, workspace.mesh.faces[static_cast<std::size_t>(*face)]);
+	return sum;
+}
+
 FaceGeometry face_geometry(const Workspace& workspace, const std::vector<Point>& positions)
 {
 	FaceGeometry geometry(workspace.mesh.faces.size());
-	workspace.execution.parallel_for(
-		workspace.mesh.face_count(), GRAIN, [&](Index begin, Index end, int) {
-			for (Index i = begin; i < end; ++i)
-				geometry.measure(positions, workspace.mesh.faces, static_cast<std::size_t>(i));
-		});
+	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
+		geometry.measure(positions, workspace.mesh.faces, i);
+	});
 	return geometry;
 }
 

@@ -34,6 +34,10 @@ struct Workspace {
 	}
 };
 
+/// Sum of the cross products of the faces around a vertex: along its normal, weighted by area.
+Point cross_product_around(
+	const Workspace& workspace, const std::vector<Point>& positions, Index vertex);
+
 /// As the functions of the same names for any mesh, on all threads.
 FaceGeometry face_geometry(const Workspace& workspace, const std::vector<Point>& positions);
 double mean_edge_length(const Workspace& workspace, const std::vector<Point>& positions);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sampling.h"
 
+#include "shapes.h"
+#include "step_fixture.h"
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -116,21 +119,62 @@ TEST_CASE("Values all alike are all taken", "[sampling]")
 	CHECK(sample_by_value(std::vector<double>(20000, 0.0), 2500).size() == 20000);
 }
 
-TEST_CASE("About one in so many is chosen", "[sampling]")
+TEST_CASE("About one face in so many is chosen, everywhere alike", "[sampling]")
 {
-	std::mt19937 generator(2);
-	std::vector<double> values(20000);
-	for (double& value : values)
-		value = 1 + static_cast<double>(generator()) * 0x1p-32;
-	for (const int one_in : {1, 2, 3}) {
-		const std::vector<std::uint8_t> flags = choose_by_value(values, one_in);
+	const StepFixture f(make_torus(20000));
+	const std::vector<double> values = areas(f.mesh.face_count());
+	for (const int one_in : {1, 2, 3, 4}) {
+		CAPTURE(one_in);
+		const std::vector<std::uint8_t> flags = choose_evenly(f.workspace, values, one_in);
 		REQUIRE(flags.size() == values.size());
 		CHECK(
 			static_cast<double>(std::count(flags.begin(), flags.end(), 1)) ==
-			Approx(20000.0 / one_in).epsilon(0.05));
+			Approx(static_cast<double>(flags.size()) / one_in).epsilon(0.05));
+		// Faces chosen within two rings, some forty faces, over all: were each chosen for itself,
+		// their number would have the variance p (1 - p) for a face.
+		RingCollector rings = f.workspace.ring_collector();
+		double sum = 0;
+		double squares = 0;
+		double faces = 0;
+		for (Index i = 0; i < f.mesh.face_count(); ++i) {
+			rings.collect(i, 2);
+			double chosen = 0;
+			for (const Index j : rings.faces())
+				chosen += flags[static_cast<std::size_t>(j)];
+			sum += chosen;
+			squares += chosen * chosen;
+			faces += static_cast<double>(rings.faces().size());
+		}
+		const double count = f.mesh.face_count();
+		const double variance = squares / count - sum / count * sum / count;
+		const double share = 1.0 / one_in;
+		CHECK(variance <= 0.5 * share * (1 - share) * faces / count);
 	}
-	const std::vector<std::uint8_t> all(100, 1);
-	CHECK(choose_by_value(std::vector<double>(100, 2.5), 2) == all);
+}
+
+TEST_CASE("The same faces are chosen whatever their order and unit", "[sampling]")
+{
+	const TriangleMesh mesh = make_torus(5000);
+	const std::vector<double> values = areas(mesh.face_count());
+	TriangleMesh reversed = mesh;
+	std::reverse(reversed.faces.begin(), reversed.faces.end());
+	std::vector<double> reversed_values(values.rbegin(), values.rend());
+	for (double& value : reversed_values)
+		value *= 0x1p-20;
+	const StepFixture f(mesh);
+	const StepFixture g(reversed, 3);
+	std::vector<std::uint8_t> flags = choose_evenly(g.workspace, reversed_values, 3);
+	std::reverse(flags.begin(), flags.end());
+	CHECK(flags == choose_evenly(f.workspace, values, 3));
+}
+
+TEST_CASE("All faces are chosen where their values are all alike", "[sampling]")
+{
+	const StepFixture f(make_torus(2000));
+	const auto count = static_cast<std::size_t>(f.mesh.face_count());
+	const std::vector<std::uint8_t> all(count, 1);
+	CHECK(choose_evenly(f.workspace, std::vector<double>(count, 2.5), 4) == all);
+	CHECK(choose_evenly(f.workspace, std::vector<double>(count, 0.0), 4) == all);
 }
 
 TEST_CASE("A quantile has that share of the values below it", "[sampling]")

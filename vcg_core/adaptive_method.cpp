@@ -82,10 +82,11 @@ constexpr double HEIGHT_SELECTION = 12;
 constexpr double ORIGINAL_SHARE = 0.7;
 
 // Noise from which structures are wide: height structures of one ring hold too few vertices to be
-// worth fitting, and all have so many members in common that one in two faces having its own is
-// enough (but for the last word on the normals, where it costs a per cent of the squared error).
+// worth fitting, and all have so many members in common that some of the faces having their own is
+// enough. Fewest where the result is filtered again, and for heights, whose structures are widest.
 constexpr double WIDE_STRUCTURES_NOISE = 0.15;
-constexpr int FACES_PER_WIDE_STRUCTURE = 2;
+constexpr int FACES_PER_WIDE_STRUCTURE = 3;
+constexpr int FACES_PER_LAST_WIDE_STRUCTURE = 2;
 
 // Ambiguity (0 to 1) beyond which normals decide alone, at the relative noise below: heights know
 // edges only through the guides, and these know them less where the noise is larger than the
@@ -352,8 +353,10 @@ private:
 		options.smallest_ring = plan_.rings.smallest;
 		options.largest_ring = plan_.rings.largest;
 		options.selection = plan_.selection;
-		if (plan_.noise >= WIDE_STRUCTURES_NOISE && iteration + 1 < plan_.iterations)
-			options.faces_per_structure = FACES_PER_WIDE_STRUCTURE;
+		if (plan_.noise >= WIDE_STRUCTURES_NOISE)
+			options.faces_per_structure = iteration + 1 < plan_.iterations ?
+											  FACES_PER_WIDE_STRUCTURE :
+											  FACES_PER_LAST_WIDE_STRUCTURE;
 		return filter_normals(
 			workspace_, normal_field(original, current, workspace_.execution), options);
 	}

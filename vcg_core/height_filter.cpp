@@ -426,8 +426,8 @@ std::vector<double> perimeters(const Workspace& workspace, const std::vector<Poi
 std::vector<Point> normals_from_heights(
 	const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options)
 {
-	const std::vector<std::uint8_t> chosen =
-		choose_by_value(perimeters(workspace, field.positions), options.faces_per_structure);
+	const std::vector<std::uint8_t> chosen = choose_evenly(
+		workspace, perimeters(workspace, field.positions), options.faces_per_structure);
 	// A deque, since voters do not move.
 	std::deque<Voter> voters;
 	for (int worker = 0; worker < workspace.execution.threads(); ++worker)

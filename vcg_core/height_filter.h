@@ -25,7 +25,7 @@ struct HeightFilterOptions {
 	/// with the least risk, of a few that grow like powers.
 	int smallest_ring = 1;
 	int largest_ring = 5;
-	/// One in so many faces, chosen by its shape, gets a structure of its own; the others take what
+	/// One in so many faces, spread evenly, gets a structure of its own; the others take what
 	/// these vote. 1 or more.
 	int faces_per_structure = 1;
 	/// Standard deviation of the noise of the positions along the normal, the caller's length unit.

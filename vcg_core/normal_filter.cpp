@@ -433,7 +433,7 @@ std::vector<Point> filter_normals(
 	const Variances floors = measure_noise_floors(workspace, field, options, structures);
 	workspace.execution.begin_part(1, 16, 15);
 	const std::vector<std::uint8_t> chosen =
-		choose_by_value(field.weights, options.faces_per_structure);
+		choose_evenly(workspace, field.weights, options.faces_per_structure);
 	std::vector<Voter> voters;
 	voters.reserve(structures.size());
 	for (Structures& own : structures)

@@ -29,7 +29,7 @@ struct NormalFilterOptions {
 	int largest_ring = 4;
 	/// A coefficient is kept where its energy exceeds this many times the noise variance.
 	double selection = 9;
-	/// One in so many faces, chosen by its weight, gets a structure of its own; the others take
+	/// One in so many faces, spread evenly, gets a structure of its own; the others take
 	/// what these vote. 1 or more.
 	int faces_per_structure = 1;
 

@@ -11,7 +11,24 @@ namespace {
 
 // Digits of a value beyond this many parts of its mean are rounding.
 constexpr double DICE_RESOLUTION = 1e6;
+// Sizes beyond that are no digits, and too rare to be missed.
 constexpr double LARGEST_DIGITS = 1e18;
+
+double scale_of(double mean)
+{
+	return mean > 0 ? DICE_RESOLUTION / mean : 0;
+}
+
+// Digits of a value as bits that have nothing to do with those of a value nearby: multiplied by
+// 2^64 over the golden ratio, with the high bits brought down, twice.
+std::uint64_t dice_of(double value, double scale)
+{
+	constexpr std::uint64_t FACTOR = 0x9E3779B97F4A7C15U;
+	auto bits = static_cast<std::uint64_t>(std::min(LARGEST_DIGITS, scale * value));
+	bits *= FACTOR;
+	bits = (bits ^ bits >> 32U) * FACTOR;
+	return bits ^ bits >> 32U;
+}
 
 } // namespace
 
@@ -25,7 +42,6 @@ std::vector<Index> sample_by_value(const std::vector<double>& values, Index want
 	if (every > 1 && mean > 0) {
 		for (Index i = 0; i < count; ++i) {
 			const double digits = DICE_RESOLUTION * values[static_cast<std::size_t>(i)] / mean;
-			// Sizes beyond that are no digits, and too rare to be missed.
 			if (digits < LARGEST_DIGITS && static_cast<std::int64_t>(digits) % every == 0)
 				sample.push_back(i);
 		}
@@ -38,13 +54,34 @@ std::vector<Index> sample_by_value(const std::vector<double>& values, Index want
 	return sample;
 }
 
-std::vector<std::uint8_t> choose_by_value(const std::vector<double>& values, int one_in)
+std::vector<std::uint8_t>
+choose_evenly(const Workspace& workspace, const std::vector<double>& values, int one_in)
 {
+	std::vector<std::uint8_t> flags(values.size(), 1);
 	if (one_in == 1)
-		return std::vector<std::uint8_t>(values.size(), 1);
-	std::vector<std::uint8_t> flags(values.size(), 0);
-	for (const Index i : sample_by_value(values, static_cast<Index>(values.size()) / one_in))
-		flags[static_cast<std::size_t>(i)] = 1;
+		return flags;
+	const Index count = workspace.mesh.face_count();
+	const double mean = workspace.execution.sum(count, [&](Index i) {
+		return values[static_cast<std::size_t>(i)];
+	}) / std::max<Index>(1, count);
+	std::vector<std::uint32_t> dice(values.size());
+	workspace.execution.for_each(count, [&](std::size_t i) {
+		dice[i] = static_cast<std::uint32_t>(dice_of(values[i], scale_of(mean)));
+	});
+	workspace.execution.for_each(count, [&](std::size_t i) {
+		// Its neighbours across edges count twice, itself once.
+		int faces = -2;
+		int lower = 0;
+		for (const Index corner : workspace.mesh.faces[i]) {
+			const Index* const end = workspace.vertex_faces.end(corner);
+			for (const Index* it = workspace.vertex_faces.begin(corner); it != end; ++it)
+				lower += static_cast<int>(dice[static_cast<std::size_t>(*it)] < dice[i]);
+			faces += workspace.vertex_faces.size(corner);
+		}
+		// The lowest are chosen, and where their number is no whole one, some of those in between.
+		const double between = 0x1p-32 * static_cast<std::uint32_t>(dice_of(dice[i], 1));
+		flags[i] = static_cast<std::uint8_t>(one_in * (lower + between) < faces);
+	});
 	return flags;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "triangle_mesh.h"
+#include "workspace.h"
 
 #include <cstdint>
 #include <vector>
@@ -15,8 +16,12 @@ namespace orthopoly {
 /// @param values positive numbers, one an item
 std::vector<Index> sample_by_value(const std::vector<double>& values, Index wanted);
 
-/// Flags of about one item in so many, chosen in the same way; of all for one in one.
-std::vector<std::uint8_t> choose_by_value(const std::vector<double>& values, int one_in);
+/// #F flags of about one face in so many, everywhere alike: one in so many of any face and those
+/// that share a vertex with it. By the digits of the faces' values too; all faces for one in one,
+/// and where values are all alike.
+/// @param values #F positive numbers
+std::vector<std::uint8_t>
+choose_evenly(const Workspace& workspace, const std::vector<double>& values, int one_in);
 
 /// Deviation of a normal distribution over the median of its absolute values.
 constexpr double DEVIATION_PER_MEDIAN = 1.4826;

@@ -64,6 +64,11 @@ constexpr int ITERATIONS = 2;
 // Accelerated ones: as good as twice to three times as many plain ones.
 constexpr int VERTEX_ITERATIONS = 10;
 
+// Share of them that iterations before the last one take, from one noise to the other: vertices
+// that follow normals which are still rough all the way slide the further the rougher these are.
+constexpr double FULL_STEPS_NOISE = 0.1;
+constexpr double HALF_STEPS_NOISE = 0.2;
+
 // Increment of the threshold of similar directions, from one noise to the other: the more noise the
 // first iteration took out of the guides, the stricter the next can be.
 constexpr double LEAST_INCREMENT = 0.05;
@@ -112,6 +117,12 @@ constexpr double SCANNER_THRESHOLD = 0.6;
 constexpr double SCANNER_THRESHOLD_INCREMENT = 0.05;
 constexpr double SCANNER_SELECTION = 200;
 
+// How far a noise is on the way from one to another, 0 to 1.
+double way_between(double from, double to, double noise)
+{
+	return std::min(1.0, std::max(0.0, (noise - from) / (to - from)));
+}
+
 // Threshold of similar directions by noise level: strict while normals can be trusted, loose enough
 // for their scatter after the prefilter beyond.
 double cos_threshold_for(double noise)
@@ -132,10 +143,8 @@ double cos_threshold_for(double noise)
 
 double cos_threshold_increment_for(double noise)
 {
-	const double share =
-		(noise - LEAST_INCREMENT_NOISE) / (LARGEST_INCREMENT_NOISE - LEAST_INCREMENT_NOISE);
-	return LEAST_INCREMENT +
-		   std::min(1.0, std::max(0.0, share)) * (LARGEST_INCREMENT - LEAST_INCREMENT);
+	return LEAST_INCREMENT + way_between(LEAST_INCREMENT_NOISE, LARGEST_INCREMENT_NOISE, noise) *
+								 (LARGEST_INCREMENT - LEAST_INCREMENT);
 }
 
 // Rings a structure may reach: wider the more there is to average.
@@ -171,6 +180,8 @@ struct Plan {
 	double prefilter_pairs = 0;
 	int iterations = ITERATIONS;
 	int vertex_iterations = VERTEX_ITERATIONS;
+	/// Those of the iterations before the last.
+	int early_vertex_iterations = VERTEX_ITERATIONS;
 	double cos_threshold = 0;
 	double cos_threshold_increment = LEAST_INCREMENT;
 	double selection = SELECTION;
@@ -204,8 +215,7 @@ Plan plan_for(const DenoiseOptions& options, double noise, double correlation)
 	Plan plan;
 	plan.noise = noise;
 	plan.correlation = correlation;
-	const double faded = (noise - PREFILTER_FROM) / (PREFILTER_FULL - PREFILTER_FROM);
-	const double white_pairs = std::min(1.0, std::max(0.0, faded)) *
+	const double white_pairs = way_between(PREFILTER_FROM, PREFILTER_FULL, noise) *
 							   (PREFILTER_BASE_PAIRS + PREFILTER_PAIRS_PER_NOISE * noise);
 	plan.prefilter_pairs =
 		between(white_pairs, SCANNER_PAIRS * strength_factor(options.strength), correlation);
@@ -227,6 +237,9 @@ Plan plan_for(const DenoiseOptions& options, double noise, double correlation)
 	}
 	plan.iterations = options.iterations.value_or(plan.iterations);
 	plan.vertex_iterations = options.vertex_iterations.value_or(plan.vertex_iterations);
+	const double share = 1 - 0.5 * way_between(FULL_STEPS_NOISE, HALF_STEPS_NOISE, noise);
+	plan.early_vertex_iterations =
+		static_cast<int>(std::lround(between(share, 1.0, correlation) * plan.vertex_iterations));
 	plan.cos_threshold = options.cos_threshold.value_or(plan.cos_threshold);
 	plan.cos_threshold_increment =
 		options.cos_threshold_increment.value_or(plan.cos_threshold_increment);
@@ -283,7 +296,8 @@ public:
 				refine(current, normals);
 			begin_phase(iteration, 0.8, 1.0, "moving vertices");
 			VertexUpdateOptions update;
-			update.iterations = plan_.vertex_iterations;
+			update.iterations = iteration + 1 < plan_.iterations ? plan_.early_vertex_iterations :
+																   plan_.vertex_iterations;
 			update.area_weights = true;
 			update.unfold_cosine = FOLD_COSINE;
 			if (plan_.correlation < 1) {

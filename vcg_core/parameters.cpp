@@ -247,7 +247,8 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"Vertex update steps (-1: automatic)",
 					"Steps that move the vertices towards the filtered normals in each iteration, 1 to "
 					"500 (the paper: 10). More follows the normals more closely; fewer leaves the "
-					"vertices closer to where they were.")))),
+					"vertices closer to where they were. The adaptive method leaves out up to half of "
+					"them before the last iteration, the more the stronger the noise.")))),
 		bind(
 			&Options::structure_ring,
 			advanced(within(

@@ -61,12 +61,6 @@ void validate(const TriangleMesh& mesh)
 			std::to_string(mesh.positions.size()) + " vertices; give one a vertex, or none at all");
 }
 
-Point face_cross_product(const std::vector<Point>& positions, const Face& face)
-{
-	const Point& a = corner(positions, face, 0);
-	return (corner(positions, face, 1) - a).cross(corner(positions, face, 2) - a);
-}
-
 bool is_degenerate(const std::vector<Point>& positions, const Face& face)
 {
 	// Negated, so that the answer is also true where the lengths are not numbers.

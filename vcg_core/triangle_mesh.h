@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -52,7 +53,13 @@ struct FaceGeometry {
 void validate(const TriangleMesh& mesh);
 
 /// Twice the area times the unit normal of a face.
-Point face_cross_product(const std::vector<Point>& positions, const Face& face);
+inline Point face_cross_product(const std::vector<Point>& positions, const Face& face)
+{
+	const auto corner = [&](std::size_t k) -> const Point& {
+		return positions[static_cast<std::size_t>(face[k])];
+	};
+	return (corner(1) - corner(0)).cross(corner(2) - corner(0));
+}
 
 /// True where a face names a vertex twice or its area is too small for its normal to mean
 /// anything: below 1e-14 of its longest edge squared.

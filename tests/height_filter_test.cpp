@@ -249,6 +249,26 @@ TEST_CASE("Normals from heights are the same on any number of threads", "[height
 		CHECK(same_bits(found(StepFixture(mesh, threads)), expected));
 }
 
+TEST_CASE("Wide lanes give the same bits for heights", "[height_filter]")
+{
+	if (!has_wide_lanes()) {
+		WARN("this processor has no wide lanes; nothing to compare");
+		return;
+	}
+	const StepFixture f(noisy(make_part(4000), 0.15));
+	// Those of the mesh without noise: structures with all faces as members, and with some.
+	const FaceGeometry clean = face_geometry(make_part(4000).positions, f.mesh.faces);
+	for (const int rings : {2, 7}) {
+		HeightFilterOptions options = options_of(0.15 * f.workspace.mean_edge_length, 1, rings);
+		const auto found = [&](bool wide) {
+			options.wide_lanes = wide;
+			return normals_from_heights(
+				f.workspace, {clean.normals, f.geometry.centroids, f.mesh.positions}, options);
+		};
+		CHECK(same_bits(found(true), found(false)));
+	}
+}
+
 TEST_CASE("The height filter can be stopped", "[height_filter]")
 {
 	const TriangleMesh mesh = make_flat_grid(10);

@@ -265,6 +265,23 @@ TEST_CASE("Filtered normals are the same on any number of threads", "[normal_fil
 	}
 }
 
+TEST_CASE("Wide lanes give the same bits for normals", "[normal_filter]")
+{
+	if (!has_wide_lanes()) {
+		WARN("this processor has no wide lanes; nothing to compare");
+		return;
+	}
+	const StepFixture f(noisy(make_part(4000), 0.2));
+	for (const int largest : {2, 6}) {
+		NormalFilterOptions options = rings(2, largest);
+		const auto found = [&](bool wide) {
+			options.wide_lanes = wide;
+			return filter_normals(f.workspace, field_of(f.geometry), options);
+		};
+		CHECK(same_bits(found(true), found(false)));
+	}
+}
+
 TEST_CASE("The normal filter can be stopped", "[normal_filter]")
 {
 	const TriangleMesh mesh = make_flat_grid(10);

@@ -60,6 +60,36 @@ void check_rings(const Workspace& workspace, int rings)
 	CHECK(own == workspace.mesh.face_count());
 }
 
+// The vertices of the faces collected, each where the first face has it.
+void check_vertices(const Workspace& workspace, int rings)
+{
+	Patch patch;
+	for (Index number = 0; number < Patch::count(workspace); ++number) {
+		patch.build(workspace, number, rings);
+		CAPTURE(number);
+		for (Index face = 0; face < patch.own_faces(); face += 7) {
+			patch.collect(face, rings);
+			std::vector<Index> expected;
+			std::vector<std::size_t> ends;
+			for (int ring = 0; ring <= rings; ++ring) {
+				for (std::size_t k = ring > 0 ? patch.count_within(ring - 1) : 0;
+					 k < patch.count_within(ring);
+					 ++k) {
+					for (const Index vertex : patch.faces()[at(patch.collected()[k])]) {
+						if (std::find(expected.begin(), expected.end(), vertex) == expected.end())
+							expected.push_back(vertex);
+					}
+				}
+				ends.push_back(expected.size());
+			}
+			const IndexSpan found = patch.collect_vertices();
+			REQUIRE(std::vector<Index>(found.begin(), found.end()) == expected);
+			for (int ring = 0; ring <= rings; ++ring)
+				REQUIRE(patch.vertex_count_within(ring) == ends[at(ring)]);
+		}
+	}
+}
+
 } // namespace
 
 TEST_CASE("Rings inside a patch are those of the mesh", "[patch]")
@@ -71,6 +101,19 @@ TEST_CASE("Rings inside a patch are those of the mesh", "[patch]")
 			continue;
 		const StepFixture f(mesh);
 		check_rings(f.workspace, 3);
+	}
+}
+
+TEST_CASE("The vertices of a collection are those of its faces", "[patch]")
+{
+	for (const Recipe& recipe : recipes()) {
+		CAPTURE(recipe.name);
+		const TriangleMesh mesh = recipe.make(1200);
+		if (mesh.face_count() > 3000)
+			continue;
+		const StepFixture f(mesh);
+		for (const int rings : {0, 3})
+			check_vertices(f.workspace, rings);
 	}
 }
 

@@ -433,7 +433,7 @@ TEST_CASE(
 	std::array<ScatteredMoments<3, 3>, LANES> moments;
 	for (std::size_t lane = 0; lane < LANES; ++lane)
 		moments[lane] = moments_of<Cubic>(random_nodes(counts[lane], 91));
-	const ScatteredFit<3, 3, Lanes> together(side_by_side(moments));
+	const ScatteredFit<3, 3, Lanes> together(side_by_side<Lanes>(moments));
 	for (std::size_t lane = 0; lane < LANES; ++lane) {
 		CAPTURE(lane);
 		const Cubic alone(moments[lane]);

@@ -18,8 +18,6 @@ namespace orthopoly {
 
 namespace {
 
-using Fit = ScatteredFit<3, 1, Lanes>;
-
 // Vertices from which a degree is fitted: half as many again as its terms.
 constexpr int VERTICES_FOR_CUBIC = 16;
 constexpr int VERTICES_FOR_QUADRATIC = 9;
@@ -54,6 +52,7 @@ std::size_t at(Index index)
 }
 
 /// Vertices side by side.
+template<class Lanes>
 struct VertexGroup {
 	Lanes x;
 	Lanes y;
@@ -62,6 +61,7 @@ struct VertexGroup {
 };
 
 // From a center to four of some points.
+template<class Lanes>
 std::array<Lanes, 3>
 offsets(const std::vector<Point>& points, const Index* four, const Point& center)
 {
@@ -75,6 +75,7 @@ offsets(const std::vector<Point>& points, const Index* four, const Point& center
 	return {component(0), component(1), component(2)};
 }
 
+template<class Lanes>
 Lanes dot(const std::array<Lanes, 3>& vectors, const Point& direction)
 {
 	return vectors[0] * Lanes(direction[0]) + vectors[1] * Lanes(direction[1]) +
@@ -83,14 +84,17 @@ Lanes dot(const std::array<Lanes, 3>& vectors, const Point& direction)
 
 /// The polynomial that a structure votes with.
 struct Polynomial {
-	Fit::Coefficients coefficients;
+	ScatteredFit<3, 1>::Coefficients coefficients;
 	double weight = 0;
 	/// 0: there is none.
 	int rings = 0;
 };
 
 /// Builds the structures of one patch after another, fits them and lets them vote.
+template<class Lanes>
 class Voter {
+	using Fit = ScatteredFit<3, 1, Lanes>;
+
 public:
 	/// @param chosen #F flags of the faces with a structure
 	Voter(
@@ -188,6 +192,33 @@ private:
 	// The vertices of the members, each ring filled up to whole groups.
 	void find_vertices(Index i)
 	{
+		const int largest = options_.largest_ring;
+		if (members_within(largest) == patch_.count_within(largest))
+			take_all_vertices();
+		else
+			take_vertices_of_members(i);
+	}
+
+	// Where all faces are members, they have been met already.
+	void take_all_vertices()
+	{
+		const IndexSpan met = patch_.collect_vertices();
+		const auto nobody = static_cast<Index>(positions_.size()) - 1;
+		vertices_.clear();
+		std::size_t begin = 0;
+		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
+			const std::size_t end = patch_.vertex_count_within(ring);
+			vertices_.insert(vertices_.end(), met.begin() + begin, met.begin() + end);
+			begin = end;
+			vertex_counts_[at(ring)] = static_cast<int>(end);
+			while (vertices_.size() % LANES != 0)
+				vertices_.push_back(nobody);
+			vertex_group_ends_[at(ring)] = vertices_.size() / LANES;
+		}
+	}
+
+	void take_vertices_of_members(Index i)
+	{
 		vertices_.resize(3 * members_.size() + vertex_group_ends_.size() * LANES);
 		const auto nobody = static_cast<Index>(positions_.size()) - 1;
 		Index* const stamps = stamps_.data();
@@ -224,8 +255,8 @@ private:
 		groups_.resize(vertices_.size() / LANES);
 		for (std::size_t k = 0; k < groups_.size(); ++k) {
 			const Index* const vertices = vertices_.data() + LANES * k;
-			const std::array<Lanes, 3> offset = offsets(positions_, vertices, center);
-			VertexGroup& group = groups_[k];
+			const std::array<Lanes, 3> offset = offsets<Lanes>(positions_, vertices, center);
+			VertexGroup<Lanes>& group = groups_[k];
 			group.x = dot(offset, tangent);
 			group.y = dot(offset, bitangent);
 			group.height = dot(offset, guide);
@@ -240,19 +271,19 @@ private:
 	{
 		Polynomial best;
 		Choice choice;
-		Fit::Moments sums;
+		typename Fit::Moments sums;
 		std::size_t group = 0;
 		for (std::size_t first = 0; first < sizes_.size(); first += LANES) {
 			const std::size_t end = std::min(first + LANES, sizes_.size());
 			std::array<ScatteredMoments<3, 1>, LANES> of_sizes;
 			for (std::size_t k = first; k < end; ++k) {
 				for (; group < vertex_group_ends_[at(sizes_[k])]; ++group) {
-					const VertexGroup& vertices = groups_[group];
+					const VertexGroup<Lanes>& vertices = groups_[group];
 					sums.add(vertices.x, vertices.y, {vertices.height}, vertices.weight);
 				}
 				add_up(sums, vertex_counts_[at(sizes_[k])], of_sizes[k - first]);
 			}
-			const Fit fitted(side_by_side(of_sizes));
+			const Fit fitted(side_by_side<Lanes>(of_sizes));
 			const Slopes slopes(fitted);
 			choice.rings = 0;
 			bool goes_on = true;
@@ -363,7 +394,8 @@ private:
 			LANES,
 			static_cast<Index>(guides_.size()) - 1);
 		for (std::size_t k = 0; k < end; k += LANES) {
-			const std::array<Lanes, 3> offset = offsets(places_, members_.data() + k, center);
+			const std::array<Lanes, 3> offset =
+				offsets<Lanes>(places_, members_.data() + k, center);
 			const Lanes x = dot(offset, tangent);
 			const Lanes y = dot(offset, bitangent);
 			const Lanes slope_x =
@@ -403,12 +435,20 @@ private:
 	/// Members within each number of rings.
 	std::vector<std::size_t> member_ends_;
 	std::vector<Index> vertices_;
-	std::vector<VertexGroup> groups_;
+	std::vector<VertexGroup<Lanes>> groups_;
 	/// Vertices of the members within each number of rings, and groups of them.
 	std::vector<int> vertex_counts_;
 	std::vector<std::size_t> vertex_group_ends_;
 	Point tangent_;
 	Point bitangent_;
+};
+
+/// The same on a processor with wide lanes.
+class WideVoter : public Voter<WideLanes> {
+public:
+	using Voter<WideLanes>::Voter;
+
+	ORTHOPOLY_WIDE void vote(Index i, std::vector<Point>& sums) { Voter<WideLanes>::vote(i, sums); }
 };
 
 // Sizes of the faces by which some of them are chosen.
@@ -421,18 +461,27 @@ std::vector<double> perimeters(const Workspace& workspace, const std::vector<Poi
 	return sizes;
 }
 
+template<class AnyVoter>
+std::vector<Point>
+let_vote(const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options)
+{
+	const std::vector<std::uint8_t> chosen = choose_evenly(
+		workspace, perimeters(workspace, field.positions), options.faces_per_structure);
+	// A deque, since voters do not move.
+	std::deque<AnyVoter> voters;
+	for (int worker = 0; worker < workspace.execution.threads(); ++worker)
+		voters.emplace_back(workspace, field, options, chosen);
+	return sum_votes(workspace, voters);
+}
+
 } // namespace
 
 std::vector<Point> normals_from_heights(
 	const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options)
 {
-	const std::vector<std::uint8_t> chosen = choose_evenly(
-		workspace, perimeters(workspace, field.positions), options.faces_per_structure);
-	// A deque, since voters do not move.
-	std::deque<Voter> voters;
-	for (int worker = 0; worker < workspace.execution.threads(); ++worker)
-		voters.emplace_back(workspace, field, options, chosen);
-	std::vector<Point> result = sum_votes(workspace, voters);
+	std::vector<Point> result = options.wide_lanes ?
+									let_vote<WideVoter>(workspace, field, options) :
+									let_vote<Voter<Lanes>>(workspace, field, options);
 	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
 		const double length = result[i].norm();
 		result[i] = length > 0 ? Point(result[i] / length) : field.guides[i];

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
+#if defined(__GNUC__) && defined(__x86_64__)
+#include <immintrin.h>
 #endif
 
 namespace orthopoly {
@@ -15,121 +15,189 @@ constexpr std::size_t LANES = 4;
 
 #if defined(__GNUC__)
 
-/// Half of the lanes: what a plain x86-64 or ARM processor works on at once.
-using LanePair = double __attribute__((vector_size(16)));
-
-inline LanePair where_positive(LanePair condition, LanePair then, LanePair otherwise)
-{
-	return condition > 0 ? then : otherwise;
-}
+/// What a plain x86-64 or ARM processor works on at once.
+using DoublePair = double __attribute__((vector_size(16)));
 
 #else
 
 /// The same for compilers without vector types.
-struct LanePair {
+struct DoublePair {
 	double values[2];
 	double operator[](std::size_t k) const { return values[k]; }
+	double& operator[](std::size_t k) { return values[k]; }
 };
 
-inline LanePair operator+(LanePair a, LanePair b)
+inline DoublePair operator+(const DoublePair& a, const DoublePair& b)
 {
 	return {{a[0] + b[0], a[1] + b[1]}};
 }
-inline LanePair operator-(LanePair a, LanePair b)
+inline DoublePair operator-(const DoublePair& a, const DoublePair& b)
 {
 	return {{a[0] - b[0], a[1] - b[1]}};
 }
-inline LanePair operator*(LanePair a, LanePair b)
+inline DoublePair operator*(const DoublePair& a, const DoublePair& b)
 {
 	return {{a[0] * b[0], a[1] * b[1]}};
 }
-inline LanePair operator/(LanePair a, LanePair b)
+inline DoublePair operator/(const DoublePair& a, const DoublePair& b)
 {
 	return {{a[0] / b[0], a[1] / b[1]}};
 }
-inline LanePair where_positive(LanePair condition, LanePair then, LanePair otherwise)
-{
-	return {{condition[0] > 0 ? then[0] : otherwise[0], condition[1] > 0 ? then[1] : otherwise[1]}};
-}
 
 #endif
 
-inline LanePair square_root(LanePair pair)
+// By reference throughout: how vectors are handed over by value depends on the processor that the
+// function was compiled for.
+
+inline void take_square_root(DoublePair& pair)
 {
 #ifdef __SSE2__
-	return _mm_sqrt_pd(pair);
+	pair = _mm_sqrt_pd(pair);
 #else
-	return LanePair {std::sqrt(pair[0]), std::sqrt(pair[1])};
+	pair = DoublePair {std::sqrt(pair[0]), std::sqrt(pair[1])};
 #endif
 }
 
+#if defined(__GNUC__) && defined(__x86_64__)
+
+/// What a processor with AVX2 works on at once.
+using DoubleQuad = double __attribute__((vector_size(32)));
+
+/// For a function that is to be compiled, with all that it calls, for processors with AVX2.
+#define ORTHOPOLY_WIDE __attribute__((target("avx2"), flatten))
+
+__attribute__((target("avx2"))) inline void take_square_root(DoubleQuad& quad)
+{
+	quad = _mm256_sqrt_pd(quad);
+}
+
+/// Whether the processor at hand has AVX2.
+inline bool has_wide_lanes()
+{
+	return __builtin_cpu_supports("avx2") != 0;
+}
+
+#else
+
+using DoubleQuad = DoublePair;
+#define ORTHOPOLY_WIDE
+inline bool has_wide_lanes()
+{
+	return false;
+}
+
+#endif
+
 /// Doubles worked on side by side. What comes out does not depend on the processor: each lane is
-/// worked on by itself, as a lone double would be.
-struct Lanes {
-	std::array<LanePair, 2> pairs;
+/// worked on by itself, as a lone double would be. Aligned as the processor wants it, also in code
+/// compiled for one that does not.
+/// @tparam Part as many of them as the processor works on at once
+template<class Part>
+class alignas(sizeof(Part)) BasicLanes {
+public:
+	BasicLanes() = default;
+	// Written out, for classes with one of their own are handed over by reference.
+	// NOLINTNEXTLINE(modernize-use-equals-default)
+	BasicLanes(const BasicLanes& other) : parts_(other.parts_) {}
+	BasicLanes& operator=(const BasicLanes& other) = default;
+	~BasicLanes() = default;
 
-	Lanes() = default;
-	Lanes(LanePair low, LanePair high) : pairs {low, high} {}
 	/// The same in all lanes.
-	explicit Lanes(double value) : pairs {LanePair {value, value}, LanePair {value, value}} {}
-	explicit Lanes(const std::array<double, LANES>& values) :
-			pairs {LanePair {values[0], values[1]}, LanePair {values[2], values[3]}}
+	explicit BasicLanes(double value) :
+			BasicLanes(std::array<double, LANES> {value, value, value, value})
 	{
+	}
+	explicit BasicLanes(const std::array<double, LANES>& values)
+	{
+		for (std::size_t lane = 0; lane < LANES; ++lane)
+			parts_[lane / WIDTH][lane % WIDTH] = values[lane];
 	}
 
-	double operator[](std::size_t lane) const { return pairs[lane / 2][lane % 2]; }
+	double operator[](std::size_t lane) const { return parts_[lane / WIDTH][lane % WIDTH]; }
 
-	Lanes& operator+=(const Lanes& other) { return *this = *this + other; }
-	Lanes& operator-=(const Lanes& other) { return *this = *this - other; }
-	Lanes& operator*=(const Lanes& other) { return *this = *this * other; }
+	BasicLanes& operator+=(const BasicLanes& other)
+	{
+		for (std::size_t k = 0; k < PARTS; ++k)
+			parts_[k] = parts_[k] + other.parts_[k];
+		return *this;
+	}
+	BasicLanes& operator-=(const BasicLanes& other)
+	{
+		for (std::size_t k = 0; k < PARTS; ++k)
+			parts_[k] = parts_[k] - other.parts_[k];
+		return *this;
+	}
+	BasicLanes& operator*=(const BasicLanes& other)
+	{
+		for (std::size_t k = 0; k < PARTS; ++k)
+			parts_[k] = parts_[k] * other.parts_[k];
+		return *this;
+	}
+	BasicLanes& operator/=(const BasicLanes& other)
+	{
+		for (std::size_t k = 0; k < PARTS; ++k)
+			parts_[k] = parts_[k] / other.parts_[k];
+		return *this;
+	}
 
-	friend Lanes operator+(const Lanes& a, const Lanes& b)
+	friend BasicLanes operator+(BasicLanes a, const BasicLanes& b) { return a += b; }
+	friend BasicLanes operator-(BasicLanes a, const BasicLanes& b) { return a -= b; }
+	friend BasicLanes operator*(BasicLanes a, const BasicLanes& b) { return a *= b; }
+	friend BasicLanes operator/(BasicLanes a, const BasicLanes& b) { return a /= b; }
+
+	friend BasicLanes square_root(BasicLanes lanes)
 	{
-		return {a.pairs[0] + b.pairs[0], a.pairs[1] + b.pairs[1]};
+		for (Part& part : lanes.parts_)
+			take_square_root(part);
+		return lanes;
 	}
-	friend Lanes operator-(const Lanes& a, const Lanes& b)
+
+	/// `then` where the condition is above zero, `otherwise` elsewhere (NaN included).
+	friend BasicLanes
+	where_positive(const BasicLanes& condition, BasicLanes then, const BasicLanes& otherwise)
 	{
-		return {a.pairs[0] - b.pairs[0], a.pairs[1] - b.pairs[1]};
+		for (std::size_t k = 0; k < PARTS; ++k) {
+#if defined(__GNUC__)
+			then.parts_[k] = condition.parts_[k] > 0 ? then.parts_[k] : otherwise.parts_[k];
+#else
+			for (std::size_t lane = 0; lane < WIDTH; ++lane) {
+				if (!(condition.parts_[k][lane] > 0))
+					then.parts_[k][lane] = otherwise.parts_[k][lane];
+			}
+#endif
+		}
+		return then;
 	}
-	friend Lanes operator*(const Lanes& a, const Lanes& b)
+
+	friend double lane_of(const BasicLanes& lanes, std::size_t lane)
 	{
-		return {a.pairs[0] * b.pairs[0], a.pairs[1] * b.pairs[1]};
+		return lanes[lane];
 	}
-	friend Lanes operator/(const Lanes& a, const Lanes& b)
+	friend double sum_of_lanes(const BasicLanes& lanes)
 	{
-		return {a.pairs[0] / b.pairs[0], a.pairs[1] / b.pairs[1]};
+		return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 	}
+
+private:
+	static constexpr std::size_t WIDTH = sizeof(Part) / sizeof(double);
+	static constexpr std::size_t PARTS = LANES / WIDTH;
+
+	std::array<Part, PARTS> parts_;
 };
 
-inline double lane_of(const Lanes& lanes, std::size_t lane)
-{
-	return lanes[lane];
-}
+/// Lanes for any processor, and for one that has wide ones: the same values.
+using Lanes = BasicLanes<DoublePair>;
+using WideLanes = BasicLanes<DoubleQuad>;
+
+// A lone double in their place.
+
 inline double lane_of(double value, std::size_t /*lane*/)
 {
 	return value;
 }
-
-inline double sum_of_lanes(const Lanes& lanes)
-{
-	return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-}
-
-/// `then` where the condition is above zero, `otherwise` elsewhere (NaN included).
-inline Lanes where_positive(const Lanes& condition, const Lanes& then, const Lanes& otherwise)
-{
-	return {
-		where_positive(condition.pairs[0], then.pairs[0], otherwise.pairs[0]),
-		where_positive(condition.pairs[1], then.pairs[1], otherwise.pairs[1])};
-}
 inline double where_positive(double condition, double then, double otherwise)
 {
 	return condition > 0 ? then : otherwise;
-}
-
-inline Lanes square_root(const Lanes& lanes)
-{
-	return {square_root(lanes.pairs[0]), square_root(lanes.pairs[1])};
 }
 inline double square_root(double value)
 {

@@ -17,14 +17,15 @@ namespace orthopoly {
 
 namespace {
 
-using Fit = ScatteredFit<2, 3, Lanes>;
+template<class Lanes>
+using FitOf = ScatteredFit<2, 3, Lanes>;
 
 // One structure in so many gives the noise floor.
 constexpr Index SAMPLE_EVERY = 8;
 
 // But so many at least, or a small mesh would have no steady floor; and so many are always enough.
 constexpr Index LEAST_SAMPLE = 1000;
-constexpr Index LARGEST_SAMPLE = 20000;
+constexpr Index LARGEST_SAMPLE = 5000;
 
 // The floor is read low among the residual variances: features only ever add to them.
 constexpr double FLOOR_QUANTILE = 0.3;
@@ -57,9 +58,14 @@ std::size_t at(Index index)
 	return static_cast<std::size_t>(index);
 }
 
+std::size_t degree_for(int members)
+{
+	return members >= MEMBERS_FOR_QUADRATIC ? 2 : members >= MEMBERS_FOR_LINEAR ? 1 : 0;
+}
+
 /// The polynomial that a structure votes with.
 struct Polynomial {
-	Fit::Coefficients coefficients;
+	FitOf<double>::Coefficients coefficients;
 	double weight = 0;
 	/// 0: there is none.
 	int rings = 0;
@@ -74,8 +80,11 @@ struct Observation {
 };
 
 /// Builds the structures of one patch after another.
+template<class Lanes>
 class Structures {
 public:
+	using Fit = FitOf<Lanes>;
+
 	Structures(
 		const Workspace& workspace, const NormalField& field, const NormalFilterOptions& options) :
 			workspace_(workspace),
@@ -113,7 +122,7 @@ public:
 		find_members(i);
 		choose_axes(i);
 		lay_out(i);
-		Fit::Moments sums;
+		typename Fit::Moments sums;
 		std::size_t group = 0;
 		for (int ring = 0; ring < options_.smallest_ring; ++ring)
 			add_ring(ring, group, sums);
@@ -125,9 +134,27 @@ public:
 				add_ring(size, group, sums);
 				add_up(sums, counts_[at(size)], of_sizes[at(size - ring)]);
 			}
-			if (!visit(Fit(side_by_side(of_sizes)), ring, end))
+			if (!visit(Fit(side_by_side<Lanes>(of_sizes)), ring, end))
 				return;
 		}
+	}
+
+	/// Residual variances of the structures of a face; negative where there is none.
+	Variances residual_variances(Index i)
+	{
+		Variances variances;
+		variances.fill(-1);
+		for_each_fit(i, [&](const Fit& fitted, int ring, int end) {
+			for (int size = ring; size < end; ++size) {
+				const std::size_t lane = at(size - ring);
+				const std::size_t terms = fitted.terms(degree_for(members(size)), lane);
+				const int free = members(size) - static_cast<int>(terms);
+				if (free > 0)
+					variances[at(size)] = fitted.residual(terms, lane) / free;
+			}
+			return true;
+		});
+		return variances;
 	}
 
 	/// Members within a number of rings of the structure visited last.
@@ -246,7 +273,7 @@ private:
 		}
 	}
 
-	void add_ring(int ring, std::size_t& group, Fit::Moments& sums) const
+	void add_ring(int ring, std::size_t& group, typename Fit::Moments& sums) const
 	{
 		for (; group < group_ends_[at(ring)]; ++group) {
 			const Group& members = groups_[group];
@@ -271,17 +298,15 @@ private:
 	Point bitangent_;
 };
 
-std::size_t degree_for(int members)
-{
-	return members >= MEMBERS_FOR_QUADRATIC ? 2 : members >= MEMBERS_FOR_LINEAR ? 1 : 0;
-}
-
 /// Fits the structures and lets them vote.
+template<class Lanes>
 class Voter {
+	using Fit = FitOf<Lanes>;
+
 public:
 	/// @param chosen #F flags of the faces with a structure
 	Voter(
-		Structures& structures,
+		Structures<Lanes>& structures,
 		const NormalFilterOptions& options,
 		const Variances& floors,
 		const std::vector<std::uint8_t>& chosen) :
@@ -364,18 +389,19 @@ private:
 		return risk <= HOPELESS * choice.least_risk;
 	}
 
-	Structures& structures_;
+	Structures<Lanes>& structures_;
 	const NormalFilterOptions& options_;
 	const Variances& floors_;
 	const std::vector<std::uint8_t>& chosen_;
 };
 
 // The noise variance of the data, as structures of each size see it.
+template<class AnyStructures>
 Variances measure_noise_floors(
 	const Workspace& workspace,
 	const NormalField& field,
 	const NormalFilterOptions& options,
-	std::deque<Structures>& structures)
+	std::deque<AnyStructures>& structures)
 {
 	const Index wanted = std::min(
 		LARGEST_SAMPLE, std::max(LEAST_SAMPLE, workspace.mesh.face_count() / SAMPLE_EVERY));
@@ -384,28 +410,16 @@ Variances measure_noise_floors(
 	std::vector<Variances> variances(sample.size());
 	workspace.execution.parallel_for(
 		Patch::count(workspace), 1, [&](Index begin, Index end, int worker) {
-			Structures& own = structures[static_cast<std::size_t>(worker)];
+			AnyStructures& own = structures[static_cast<std::size_t>(worker)];
 			for (Index number = begin; number < end; ++number) {
 				const Index first = number * Patch::OWN_FACES;
 				auto it = std::lower_bound(sample.begin(), sample.end(), first);
 				if (it == sample.end() || *it >= first + Patch::OWN_FACES)
 					continue;
 				own.enter(number);
-				for (; it != sample.end() && *it < first + Patch::OWN_FACES; ++it) {
-					Variances& of_sizes = variances[static_cast<std::size_t>(it - sample.begin())];
-					of_sizes.fill(-1);
-					own.for_each_fit(*it - first, [&](const Fit& fitted, int ring, int fit_end) {
-						for (int size = ring; size < fit_end; ++size) {
-							const int members = own.members(size);
-							const std::size_t lane = at(size - ring);
-							const std::size_t terms = fitted.terms(degree_for(members), lane);
-							const int free = members - static_cast<int>(terms);
-							if (free > 0)
-								of_sizes[at(size)] = fitted.residual(terms, lane) / free;
-						}
-						return true;
-					});
-				}
+				for (; it != sample.end() && *it < first + Patch::OWN_FACES; ++it)
+					variances[static_cast<std::size_t>(it - sample.begin())] =
+						own.residual_variances(*it - first);
 			}
 		});
 	Variances floors = {};
@@ -420,13 +434,30 @@ Variances measure_noise_floors(
 	return floors;
 }
 
-} // namespace
+/// The same on a processor with wide lanes.
+class WideStructures : public Structures<WideLanes> {
+public:
+	using Structures<WideLanes>::Structures;
 
-std::vector<Point> filter_normals(
-	const Workspace& workspace, const NormalField& field, const NormalFilterOptions& options)
+	ORTHOPOLY_WIDE Variances residual_variances(Index i)
+	{
+		return Structures<WideLanes>::residual_variances(i);
+	}
+};
+
+class WideVoter : public Voter<WideLanes> {
+public:
+	using Voter<WideLanes>::Voter;
+
+	ORTHOPOLY_WIDE void vote(Index i, std::vector<Point>& sums) { Voter<WideLanes>::vote(i, sums); }
+};
+
+template<class AnyStructures, class AnyVoter>
+std::vector<Point>
+let_vote(const Workspace& workspace, const NormalField& field, const NormalFilterOptions& options)
 {
 	// A deque, since structures do not move.
-	std::deque<Structures> structures;
+	std::deque<AnyStructures> structures;
 	for (int worker = 0; worker < workspace.execution.threads(); ++worker)
 		structures.emplace_back(workspace, field, options);
 	workspace.execution.begin_part(0, 16);
@@ -434,11 +465,21 @@ std::vector<Point> filter_normals(
 	workspace.execution.begin_part(1, 16, 15);
 	const std::vector<std::uint8_t> chosen =
 		choose_evenly(workspace, field.weights, options.faces_per_structure);
-	std::vector<Voter> voters;
+	std::vector<AnyVoter> voters;
 	voters.reserve(structures.size());
-	for (Structures& own : structures)
+	for (AnyStructures& own : structures)
 		voters.emplace_back(own, options, floors, chosen);
-	std::vector<Point> result = sum_votes(workspace, voters);
+	return sum_votes(workspace, voters);
+}
+
+} // namespace
+
+std::vector<Point> filter_normals(
+	const Workspace& workspace, const NormalField& field, const NormalFilterOptions& options)
+{
+	std::vector<Point> result =
+		options.wide_lanes ? let_vote<WideStructures, WideVoter>(workspace, field, options) :
+							 let_vote<Structures<Lanes>, Voter<Lanes>>(workspace, field, options);
 	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
 		const double length = result[i].norm();
 		result[i] = length > 0 && field.weights[i] > 0 ? Point(result[i] / length) : field.data[i];

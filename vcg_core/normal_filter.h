@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "lanes.h"
 #include "workspace.h"
 
 #include <vector>
@@ -32,6 +33,8 @@ struct NormalFilterOptions {
 	/// One in so many faces, spread evenly, gets a structure of its own; the others take
 	/// what these vote. 1 or more.
 	int faces_per_structure = 1;
+	/// Work on four doubles at once, which only a processor with wide lanes can. The same bits.
+	bool wide_lanes = has_wide_lanes();
 
 	static constexpr int MAX_RINGS = 15;
 };

@@ -150,34 +150,54 @@ void Patch::collect(Index face, int rings)
 		met_.resize(mesh_vertices_.size() + 1);
 	collected_[0] = face;
 	ring_ends_.assign(1, 1);
+	met_ends_.clear();
 	for (int ring = 0; ring < rings; ++ring)
 		collect_ring();
 }
 
-void Patch::collect_ring()
+IndexSpan Patch::collect_vertices()
 {
-	// Locals, since the compiler cannot know that what is written is not one of the members.
+	meet_vertices();
+	return {met_.data(), met_ends_.back()};
+}
+
+// Whether a vertex or face is new is anybody's guess, so no branch depends on it: each is written
+// down, and kept by counting it. And locals, since the compiler cannot know that what is written is
+// not one of the members.
+
+// The vertices of the ring collected last.
+void Patch::meet_vertices()
+{
 	const Index stamp = stamp_;
-	Index* const face_stamps = face_stamps_.data();
 	Index* const vertex_stamps = vertex_stamps_.data();
-	Index* const collected = collected_.data();
 	Index* const met = met_.data();
+	const Index* const collected = collected_.data();
 	const Face* const faces = faces_.data();
-	const FaceBlock* const first_blocks = first_blocks_.data();
-	const Index* const further_offsets = further_offsets_.data();
-	// Whether a vertex or face is new is anybody's guess, so no branch depends on it: each is
-	// written down, and kept by counting it.
 	const std::size_t begin = ring_ends_.size() > 1 ? ring_ends_[ring_ends_.size() - 2] : 0;
 	const std::size_t end = ring_ends_.back();
-	std::size_t met_count = 0;
+	std::size_t count = met_ends_.empty() ? 0 : met_ends_.back();
 	for (std::size_t i = begin; i < end; ++i) {
 		for (const Index vertex : faces[collected[i]]) {
-			met[met_count] = vertex;
-			met_count += static_cast<std::size_t>(vertex_stamps[vertex] != stamp);
+			met[count] = vertex;
+			count += static_cast<std::size_t>(vertex_stamps[vertex] != stamp);
 			vertex_stamps[vertex] = stamp;
 		}
 	}
-	std::size_t count = end;
+	met_ends_.push_back(count);
+}
+
+void Patch::collect_ring()
+{
+	const std::size_t begin = met_ends_.empty() ? 0 : met_ends_.back();
+	meet_vertices();
+	const std::size_t end = met_ends_.back();
+	const Index stamp = stamp_;
+	Index* const face_stamps = face_stamps_.data();
+	Index* const collected = collected_.data();
+	const Index* const met = met_.data();
+	const FaceBlock* const first_blocks = first_blocks_.data();
+	const Index* const further_offsets = further_offsets_.data();
+	std::size_t count = ring_ends_.back();
 	const auto take = [&](const FaceBlock& block) {
 		for (const Index face : block) {
 			collected[count] = face;
@@ -185,7 +205,7 @@ void Patch::collect_ring()
 			face_stamps[face] = stamp;
 		}
 	};
-	for (std::size_t i = 0; i < met_count; ++i) {
+	for (std::size_t i = begin; i < end; ++i) {
 		const Index vertex = met[i];
 		take(first_blocks[vertex]);
 		for (Index k = further_offsets[vertex]; k < further_offsets[vertex + 1]; ++k)

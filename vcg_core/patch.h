@@ -17,7 +17,7 @@ class Patch {
 public:
 	/// Faces a patch has for its own. More would have relatively fewer around them, but outgrow
 	/// the cache.
-	static constexpr Index OWN_FACES = 1024;
+	static constexpr Index OWN_FACES = 2048;
 
 	/// Patches a mesh is cut up into.
 	static Index count(const Workspace& workspace);
@@ -40,6 +40,15 @@ public:
 	IndexSpan collected() const { return {collected_.data(), ring_ends_.back()}; }
 	/// How many of them lie within a ring.
 	std::size_t count_within(int ring) const { return ring_ends_[static_cast<std::size_t>(ring)]; }
+
+	/// The vertices of what was collected last, in the order of the first face that has them. To be
+	/// called at most once for a collection.
+	IndexSpan collect_vertices();
+	/// How many of them are of faces within a ring.
+	std::size_t vertex_count_within(int ring) const
+	{
+		return met_ends_[static_cast<std::size_t>(ring)];
+	}
 
 private:
 	/// Faces around a vertex: all but few have no more, and lists of one length are gone through
@@ -69,6 +78,7 @@ private:
 	void add_face(const Workspace& workspace, Index mesh_face, bool with_surroundings);
 	void link_faces();
 	void collect_ring();
+	void meet_vertices();
 
 	Index own_faces_ = 0;
 	std::vector<Index> mesh_faces_;
@@ -90,8 +100,9 @@ private:
 	/// Larger than what it holds, which ring_ends_ says.
 	std::vector<Index> collected_;
 	std::vector<std::size_t> ring_ends_;
-	/// Vertices met in the ring collected last.
+	/// Vertices of the faces collected, but for the last ring; larger than what it holds, too.
 	std::vector<Index> met_;
+	std::vector<std::size_t> met_ends_;
 };
 
 } // namespace orthopoly

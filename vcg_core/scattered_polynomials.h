@@ -62,7 +62,7 @@ monomials(const Scalar& x, const Scalar& y, const Scalar& factor = Scalar(1))
 
 /// Sums over the nodes of a structure from which a fit follows; nodes may be added at any time.
 /// @tparam Components number of values at a node.
-/// @tparam Scalar     double, or Lanes: as many structures side by side, or parts of one.
+/// @tparam Scalar     double, or lanes: as many structures side by side, or parts of one.
 template<std::size_t Degree, std::size_t Components, class Scalar = double>
 struct ScatteredMoments {
 	static constexpr std::size_t TERMS = term_count(Degree);
@@ -112,7 +112,7 @@ struct ScatteredMoments {
 };
 
 /// The moments of as many structures, side by side.
-template<std::size_t Degree, std::size_t Components>
+template<class Lanes, std::size_t Degree, std::size_t Components>
 ScatteredMoments<Degree, Components, Lanes>
 side_by_side(const std::array<ScatteredMoments<Degree, Components>, LANES>& moments)
 {
@@ -137,7 +137,7 @@ side_by_side(const std::array<ScatteredMoments<Degree, Components>, LANES>& mome
 
 /// Adds up the lanes of the moments of one structure; the count is the caller's to give, since
 /// lanes that were filled up with nodes of no weight would count them.
-template<std::size_t Degree, std::size_t Components>
+template<class Lanes, std::size_t Degree, std::size_t Components>
 void add_up(
 	const ScatteredMoments<Degree, Components, Lanes>& lanes,
 	double count,

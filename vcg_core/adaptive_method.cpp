@@ -88,10 +88,12 @@ constexpr double ORIGINAL_SHARE = 0.7;
 
 // Noise from which structures are wide: height structures of one ring hold too few vertices to be
 // worth fitting, and all have so many members in common that some of the faces having their own is
-// enough. Fewest where the result is filtered again, and for heights, whose structures are widest.
+// enough. Fewer where the result is filtered again, fewest for heights, whose structures are
+// widest.
 constexpr double WIDE_STRUCTURES_NOISE = 0.15;
-constexpr int FACES_PER_WIDE_STRUCTURE = 3;
-constexpr int FACES_PER_LAST_WIDE_STRUCTURE = 2;
+constexpr int FACES_PER_LAST_STRUCTURE = 2;
+constexpr int FACES_PER_EARLY_STRUCTURE = 3;
+constexpr int FACES_PER_HEIGHT_STRUCTURE = 4;
 
 // Ambiguity (0 to 1) beyond which normals decide alone, at the relative noise below: heights know
 // edges only through the guides, and these know them less where the noise is larger than the
@@ -369,8 +371,8 @@ private:
 		options.selection = plan_.selection;
 		if (plan_.noise >= WIDE_STRUCTURES_NOISE)
 			options.faces_per_structure = iteration + 1 < plan_.iterations ?
-											  FACES_PER_WIDE_STRUCTURE :
-											  FACES_PER_LAST_WIDE_STRUCTURE;
+											  FACES_PER_EARLY_STRUCTURE :
+											  FACES_PER_LAST_STRUCTURE;
 		return filter_normals(
 			workspace_, normal_field(original, current, workspace_.execution), options);
 	}
@@ -383,7 +385,7 @@ private:
 		HeightFilterOptions options;
 		if (plan_.noise >= WIDE_STRUCTURES_NOISE) {
 			options.smallest_ring = std::min(2, plan_.height_rings);
-			options.faces_per_structure = FACES_PER_WIDE_STRUCTURE;
+			options.faces_per_structure = FACES_PER_HEIGHT_STRUCTURE;
 		}
 		options.largest_ring = plan_.height_rings;
 		options.sigma = sigma_;

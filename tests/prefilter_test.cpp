@@ -211,7 +211,7 @@ TEST_CASE("A vertex with a face turned over is found", "[prefilter]")
 		CAPTURE(i);
 		CHECK((flags[std::size_t(i)] != 0) == touches);
 	}
-	CHECK(flags[24] == 1);
+	CHECK(flags[24] == TURNED_OVER);
 	CHECK(count(flags) < 12);
 }
 
@@ -260,6 +260,35 @@ TEST_CASE("Smoothing where faces are folded unfolds them", "[prefilter]")
 	CHECK(count_folded_faces(positions, f.workspace) < before / 4);
 	for (std::size_t i = 0; i < flags.size(); ++i)
 		REQUIRE(same_bits(positions[i], f.mesh.positions[i]) == (flags[i] == 0));
+}
+
+TEST_CASE("A face turned over at an outline is turned back along it", "[prefilter]")
+{
+	TriangleMesh mesh = make_flat_grid(8);
+	mesh.positions[4].x() += 1.5 / 8;                   // beyond the next on the outline
+	mesh.positions[2 * 9] = Point(1.5 / 8, 2.0 / 8, 0); // and beyond one inside
+	StepFixture f(mesh);
+	const auto folded = [&] { return count_folded_faces(f.mesh.positions, f.workspace); };
+	REQUIRE(folded() >= 2);
+	std::vector<Point>& positions = f.mesh.positions;
+	for (int pair = 0; pair < 3; ++pair)
+		taubin_smooth(f.workspace, 1, positions, folded_vertices(f.workspace, positions, {}));
+	CHECK(folded() == 0);
+	for (std::size_t i = 0; i < 9; ++i)
+		CHECK(positions[i].y() == Approx(0).margin(1e-15));
+	for (const Point& p : positions)
+		CHECK(p.z() == 0);
+
+	mesh.fixed.assign(mesh.positions.size(), 0);
+	mesh.fixed[4] = mesh.fixed[2 * 9] = 1;
+	StepFixture held(mesh);
+	taubin_smooth(
+		held.workspace,
+		1,
+		held.mesh.positions,
+		folded_vertices(held.workspace, held.mesh.positions, {}));
+	CHECK(same_bits(held.mesh.positions[4], mesh.positions[4]));
+	CHECK(same_bits(held.mesh.positions[2 * 9], mesh.positions[2 * 9]));
 }
 
 TEST_CASE("The prefilter gives the same on any number of threads", "[prefilter][parallel]")

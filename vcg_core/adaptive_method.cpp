@@ -8,6 +8,7 @@
 #include "normal_filter.h"
 #include "outliers.h"
 #include "prefilter.h"
+#include "unfolding.h"
 #include "vertex_update.h"
 
 #include <Eigen/Geometry>
@@ -309,6 +310,8 @@ public:
 			update_vertices(workspace_, normals, update, positions_);
 			// Eq. 12 lets vertices slide where normals do not agree; noise does not reach so far.
 			bound_drift(start, DRIFT_BOUND * sigma_);
+			if (unfold_faces(workspace_, normals, positions_))
+				bound_drift(start, DRIFT_BOUND * sigma_);
 		}
 	}
 

@@ -20,6 +20,30 @@ std::size_t at(Index index)
 	return static_cast<std::size_t>(index);
 }
 
+// The way from a vertex on an open boundary to the middle between those next to it there; zero
+// where these are not two.
+Point way_into_outline(
+	const Workspace& workspace, const std::vector<Point>& positions, Index vertex)
+{
+	const Index* const begin = workspace.vertex_faces.begin(vertex);
+	const Index* const end = workspace.vertex_faces.end(vertex);
+	Point sum = Point::Zero();
+	int found = 0;
+	for (const Index* it = begin; it != end; ++it) {
+		for (const Index corner : workspace.mesh.faces[at(*it)]) {
+			const auto shared = std::count_if(begin, end, [&](Index other) {
+				const Face& face = workspace.mesh.faces[at(other)];
+				return std::find(face.begin(), face.end(), corner) != face.end();
+			});
+			if (corner == vertex || shared != 1)
+				continue;
+			sum += positions[at(corner)] - positions[at(vertex)];
+			++found;
+		}
+	}
+	return found == 2 ? Point(sum / 2) : Point(Point::Zero());
+}
+
 // One umbrella step from `from` to `to`: the mean of the neighbours, each weighed by the faces
 // shared.
 void umbrella_step(
@@ -52,6 +76,9 @@ void umbrella_step(
 					sum = normal.isZero(0) ? normal :
 											 Point(normal.dot(sum) / normal.squaredNorm() * normal);
 				moved[at(i)] += step / (2.0 * static_cast<double>(count)) * sum;
+				if (workspace.edges.boundary[at(i)] != 0 && !only.empty() &&
+					only[at(i)] == TURNED_OVER)
+					moved[at(i)] += step * way_into_outline(workspace, positions, i);
 			}
 		});
 	positions.swap(moved);
@@ -100,18 +127,18 @@ std::vector<std::uint8_t> folded_vertices(
 					surroundings += sums[at(face[corner])];
 				}
 				const double length = cross.norm();
-				folded[k] =
-					length <= criterion.height * longest &&
-					cross.dot(surroundings) < criterion.cosine * length * surroundings.norm();
+				const double along = cross.dot(surroundings);
+				if (length <= criterion.height * longest &&
+					along < criterion.cosine * length * surroundings.norm())
+					folded[k] = along < 0 ? TURNED_OVER : TURNED_AWAY;
 			}
 		});
 	std::vector<std::uint8_t> flags(positions.size(), 0);
 	workspace.execution.parallel_for(
 		workspace.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
 			for (Index i = begin; i < end; ++i)
-				flags[at(i)] = std::any_of(around.begin(i), around.end(i), [&](Index face) {
-					return folded[at(face)] != 0;
-				});
+				for (const Index* it = around.begin(i); it != around.end(i); ++it)
+					flags[at(i)] = std::max(flags[at(i)], folded[at(*it)]);
 		});
 	return flags;
 }

@@ -10,11 +10,12 @@
 namespace orthopoly {
 
 /// Taubin smoothing (Taubin 1995): pairs of a shrinking and an inflating umbrella step. Vertices on
-/// an open boundary move along their normal only, so that the outline stays.
+/// an open boundary move along their normal only, so that the outline stays, but for those of
+/// `only` with a face turned over: these move along with the outline too.
 ///
 /// @param pairs     number of pairs; a fraction scales the last one's steps
 /// @param positions #V, moved in place; fixed vertices stay bit for bit
-/// @param only      #V flags of the vertices to move, or empty for all
+/// @param only      #V flags of the vertices to move (see `folded_vertices`), or empty for all
 void taubin_smooth(
 	const Workspace& workspace,
 	double pairs,
@@ -31,7 +32,13 @@ struct FoldCriterion {
 	double height = std::numeric_limits<double>::infinity();
 };
 
-/// #V flags of the corners of faces that are folded over. The same on any number of threads.
+/// Flag of a vertex with a folded face.
+constexpr std::uint8_t TURNED_AWAY = 1;
+/// The same, where it is turned away by more than 90 degrees.
+constexpr std::uint8_t TURNED_OVER = 2;
+
+/// #V flags of the corners of faces that are folded over, 0 for the others. The same on any number
+/// of threads.
 std::vector<std::uint8_t> folded_vertices(
 	const Workspace& workspace,
 	const std::vector<Point>& positions,

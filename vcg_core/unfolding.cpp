@@ -1,0 +1,440 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "unfolding.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
+
+namespace orthopoly {
+
+namespace {
+
+// Normals within this cosine (60 degrees) are of the same side of an edge.
+constexpr double AGREEMENT = 0.5;
+
+// A face's cosine to its target that says folded, as in the vertex update.
+constexpr double FOLDED = 0.3;
+
+// The cosine to two faces across its edges that agree with each other, but not with the face, that
+// says folded: around a sharp edge of a box it is zero, give or take what noise leaves.
+constexpr double FOLDED_AT_EDGE = -0.1;
+
+// Edges sharper than this cosine between the normals are knife edges, where two faces that look the
+// other way prove nothing.
+constexpr double KNIFE_EDGE = -0.2;
+
+// A face within this cosine of the mean around it needs no closer look: where two out of three
+// faces across its edges look the other way, the mean is much further off.
+constexpr double PLAIN = 0.8;
+
+// Doubled projected area over the square of the longest side, for equal heights their ratio, that a
+// face turned back is given: as narrow as triangles of common meshes are, and wide enough that what
+// is left of the noise does not turn it again. Half of it where its target lies the other way.
+constexpr double AREA = 0.1;
+constexpr double AREA_AT_EDGE = 0.05;
+
+// Steps of a try, and tries, each with a ring of vertices more: nearly all folds open in the first.
+constexpr int STEPS = 30;
+constexpr int TRIES = 3;
+
+std::size_t at(Index index)
+{
+	return static_cast<std::size_t>(index);
+}
+
+/// What a face has to look towards.
+struct Aim {
+	/// Zero: anywhere.
+	Point witness;
+	/// Cosine to the witness up to which the face is folded.
+	double folded;
+	/// What it has to be like.
+	Point target;
+	/// See AREA.
+	double area;
+};
+
+/// The targets across the edges of a face.
+struct Surroundings {
+	Point sum = Point::Zero();
+	int agreeing = 0;
+	/// Those that do not agree with the face's.
+	std::array<Point, 3> others;
+	std::size_t other_count = 0;
+
+	/// Mean of the others where there are at least two and all agree with each other, else zero.
+	Point united() const
+	{
+		Point mean = Point::Zero();
+		for (std::size_t k = 0; k < other_count; ++k) {
+			if (others[k].dot(others[(k + 1) % other_count]) < AGREEMENT)
+				return Point::Zero();
+			mean += others[k];
+		}
+		return other_count < 2 ? Point(Point::Zero()) : Point(mean.normalized());
+	}
+};
+
+/// A face near a fold.
+struct PatchFace {
+	Index face;
+	Aim aim;
+	/// Its weight in the sum over the patch.
+	double weight;
+	/// Before the first step.
+	double cosine;
+};
+
+/// A fold and what is around it.
+struct Patch {
+	std::vector<PatchFace> faces;
+	/// Those that may move.
+	std::vector<Index> vertices;
+	/// Where in `vertices` each of them is.
+	std::unordered_map<Index, std::size_t> places;
+
+	template<class Visit>
+	void for_each_corner(const Face& face, Visit visit) const
+	{
+		for (std::size_t k = 0; k < 3; ++k) {
+			const auto place = places.find(face[k]);
+			if (place != places.end())
+				visit(k, place->second);
+		}
+	}
+};
+
+void make_unique(std::vector<Index>& indices)
+{
+	std::sort(indices.begin(), indices.end());
+	indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+}
+
+class Unfolder {
+public:
+	Unfolder(
+		const Workspace& workspace,
+		const std::vector<Point>& normals,
+		std::vector<Point>& positions) :
+			workspace_(workspace),
+			faces_(workspace.mesh.faces), normals_(normals), positions_(positions)
+	{
+	}
+
+	bool run()
+	{
+		bool moved = false;
+		for (const std::vector<Index>& fold : group(find_folded()))
+			moved = unfold(fold) || moved;
+		return moved;
+	}
+
+private:
+	Point cross_product(Index face) const
+	{
+		return face_cross_product(positions_, faces_[at(face)]);
+	}
+
+	double longest_side_squared(const Face& face) const
+	{
+		double longest = 0;
+		for (std::size_t k = 0; k < 3; ++k) {
+			const Point& next = positions_[at(face[(k + 1) % 3])];
+			longest = std::max(longest, (next - positions_[at(face[k])]).squaredNorm());
+		}
+		return longest;
+	}
+
+	Surroundings surroundings_of(Index face) const
+	{
+		Surroundings result;
+		const Face& corners = faces_[at(face)];
+		for (std::size_t k = 0; k < 3; ++k) {
+			const Index to = corners[(k + 1) % 3];
+			Index across = -1;
+			int found = 0;
+			for (const Index* it = workspace_.vertex_faces.begin(corners[k]);
+				 it != workspace_.vertex_faces.end(corners[k]);
+				 ++it) {
+				const Face& other = faces_[at(*it)];
+				if (*it != face && std::find(other.begin(), other.end(), to) != other.end()) {
+					across = *it;
+					++found;
+				}
+			}
+			if (found != 1 || normals_[at(across)].isZero(0))
+				continue;
+			const Point& normal = normals_[at(across)];
+			result.sum += normal;
+			if (normal.dot(normals_[at(face)]) > AGREEMENT)
+				++result.agreeing;
+			else
+				result.others[result.other_count++] = normal;
+		}
+		return result;
+	}
+
+	Aim aim_of(Index face) const
+	{
+		const Point& target = normals_[at(face)];
+		Aim believed = {target, FOLDED, target, AREA};
+		Aim none = {Point::Zero(), 0, target, 0};
+		if (target.isZero(0))
+			return none;
+		const Surroundings around = surroundings_of(face);
+		if (around.agreeing > 1)
+			return believed;
+		const Point normal = cross_product(face).normalized();
+		const Point united = around.united();
+		if (around.agreeing == 0 && around.sum.dot(target) <= AGREEMENT * around.sum.norm() &&
+			normal.dot(target) < AGREEMENT)
+			return united.isZero(0) ? none : Aim {united, 0, united, AREA};
+		if (normal.dot(target) < FOLDED) {
+			// On the other side of an edge, not folded: eq. 12 would have followed the target.
+			const auto* const end = around.others.begin() + around.other_count;
+			const bool other_side =
+				std::any_of(around.others.begin(), end, [&](const Point& other) {
+					return normal.dot(other) > AGREEMENT;
+				});
+			return other_side ? none : believed;
+		}
+		if (normal.dot(united) < FOLDED_AT_EDGE && target.dot(united) > KNIFE_EDGE)
+			return {united, 0, target, AREA_AT_EDGE};
+		return believed;
+	}
+
+	bool is_folded(Index face, const Aim& aim) const
+	{
+		const Point cross = cross_product(face);
+		return !aim.witness.isZero(0) && cross.dot(aim.witness) <= aim.folded * cross.norm();
+	}
+
+	std::vector<Index> find_folded() const
+	{
+		std::vector<Point> sums(positions_.size());
+		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
+			sums[i] = cross_product_around(workspace_, positions_, static_cast<Index>(i));
+		});
+		std::vector<std::uint8_t> flags(faces_.size(), 0);
+		workspace_.execution.for_each(workspace_.mesh.face_count(), [&](std::size_t i) {
+			const auto face = static_cast<Index>(i);
+			const Point cross = cross_product(face);
+			Point around = -3 * cross;
+			for (const Index corner : faces_[i])
+				around += sums[at(corner)];
+			const double length = cross.norm();
+			if (cross.dot(normals_[i]) <= FOLDED * length ||
+				cross.dot(around) <= PLAIN * length * around.norm())
+				flags[i] = is_folded(face, aim_of(face)) ? 1 : 0;
+		});
+		std::vector<Index> folded;
+		for (std::size_t i = 0; i < flags.size(); ++i) {
+			if (flags[i] != 0)
+				folded.push_back(static_cast<Index>(i));
+		}
+		return folded;
+	}
+
+	// Puts folded faces together whose rings have a face in common.
+	std::vector<std::vector<Index>> group(const std::vector<Index>& folded) const
+	{
+		std::vector<std::size_t> parents(folded.size());
+		std::iota(parents.begin(), parents.end(), std::size_t(0));
+		const auto root = [&](std::size_t k) {
+			while (parents[k] != k)
+				k = parents[k] = parents[parents[k]];
+			return k;
+		};
+		std::unordered_map<Index, std::size_t> owners;
+		for (std::size_t k = 0; k < folded.size(); ++k) {
+			for (const Index corner : faces_[at(folded[k])]) {
+				for (const Index* it = workspace_.vertex_faces.begin(corner);
+					 it != workspace_.vertex_faces.end(corner);
+					 ++it) {
+					const std::size_t other = root(owners.emplace(*it, k).first->second);
+					const std::size_t own = root(k);
+					parents[std::max(own, other)] = std::min(own, other);
+				}
+			}
+		}
+		std::vector<std::vector<Index>> groups;
+		std::vector<std::size_t> places(folded.size());
+		for (std::size_t k = 0; k < folded.size(); ++k) {
+			const std::size_t first = root(k);
+			if (first == k) {
+				places[k] = groups.size();
+				groups.emplace_back();
+			}
+			groups[places[first]].push_back(folded[k]);
+		}
+		return groups;
+	}
+
+	Patch patch_around(std::vector<Index> faces, int rings) const
+	{
+		Patch patch;
+		for (int ring = 0; ring <= rings; ++ring) {
+			patch.vertices.clear();
+			for (const Index face : faces)
+				patch.vertices.insert(
+					patch.vertices.end(), faces_[at(face)].begin(), faces_[at(face)].end());
+			make_unique(patch.vertices);
+			faces.clear();
+			for (const Index vertex : patch.vertices)
+				faces.insert(
+					faces.end(),
+					workspace_.vertex_faces.begin(vertex),
+					workspace_.vertex_faces.end(vertex));
+			make_unique(faces);
+		}
+		const auto stays = [&](Index vertex) {
+			return workspace_.mesh.is_fixed(vertex) || workspace_.edges.boundary[at(vertex)] != 0;
+		};
+		patch.vertices.erase(
+			std::remove_if(patch.vertices.begin(), patch.vertices.end(), stays),
+			patch.vertices.end());
+		for (std::size_t k = 0; k < patch.vertices.size(); ++k)
+			patch.places[patch.vertices[k]] = k;
+		for (const Index face : faces) {
+			Aim aim = aim_of(face);
+			const Point cross = cross_product(face);
+			const double square = longest_side_squared(faces_[at(face)]);
+			// The others keep what they have.
+			if (!is_folded(face, aim))
+				aim.area = square > 0 ? std::min(AREA, cross.dot(aim.witness) / square) : 0.0;
+			patch.faces.push_back({face, aim, cross.norm(), cosine_of(face, aim)});
+		}
+		return patch;
+	}
+
+	// To what it has to be like and what it has to look towards, both the same but at edges.
+	double cosine_of(Index face, const Aim& aim) const
+	{
+		const Point cross = cross_product(face);
+		const double length = cross.norm();
+		return length > 0 ? 0.5 * cross.dot(aim.target + aim.witness) / length : 0;
+	}
+
+	// A step of eq. 12, weighted by area.
+	void step_to_targets(const Patch& patch)
+	{
+		std::vector<Point> sums(patch.vertices.size(), Point::Zero());
+		std::vector<double> weights(patch.vertices.size(), 0);
+		for (const PatchFace& entry : patch.faces) {
+			const Face& face = faces_[at(entry.face)];
+			const Point& n = entry.aim.target;
+			if (n.isZero(0))
+				continue;
+			const double area = cross_product(entry.face).norm();
+			const Point& first = positions_[at(face[0])];
+			const Point centroid =
+				first +
+				((positions_[at(face[1])] - first) + (positions_[at(face[2])] - first)) / 3.0;
+			patch.for_each_corner(face, [&](std::size_t k, std::size_t place) {
+				sums[place] += area * n.dot(centroid - positions_[at(face[k])]) * n;
+				weights[place] += area;
+			});
+		}
+		for (std::size_t k = 0; k < sums.size(); ++k) {
+			if (weights[k] > 0)
+				positions_[at(patch.vertices[k])] += sums[k] / weights[k];
+		}
+	}
+
+	// The mean of the least moves that give each face its area.
+	void step_to_areas(const Patch& patch)
+	{
+		std::vector<Point> sums(patch.vertices.size(), Point::Zero());
+		std::vector<int> counts(patch.vertices.size(), 0);
+		for (const PatchFace& entry : patch.faces) {
+			const Face& face = faces_[at(entry.face)];
+			const double side = longest_side_squared(face);
+			const double missing =
+				entry.aim.area * side - cross_product(entry.face).dot(entry.aim.witness);
+			if (entry.aim.witness.isZero(0) || missing <= 0 || side <= 0)
+				continue;
+			std::array<Point, 3> gradients;
+			double square = 0;
+			patch.for_each_corner(face, [&](std::size_t k, std::size_t) {
+				const Point& next = positions_[at(face[(k + 1) % 3])];
+				const Point& last = positions_[at(face[(k + 2) % 3])];
+				gradients[k] = (next - last).cross(entry.aim.witness);
+				square += gradients[k].squaredNorm();
+			});
+			// No further than about the longest side, however little a move changes.
+			square = std::max(square, 0.25 * side);
+			patch.for_each_corner(face, [&](std::size_t k, std::size_t place) {
+				sums[place] += missing / square * gradients[k];
+				++counts[place];
+			});
+		}
+		for (std::size_t k = 0; k < sums.size(); ++k) {
+			if (counts[k] > 0)
+				positions_[at(patch.vertices[k])] += sums[k] / counts[k];
+		}
+	}
+
+	Index count_folded(const Patch& patch) const
+	{
+		return static_cast<Index>(
+			std::count_if(patch.faces.begin(), patch.faces.end(), [&](const PatchFace& entry) {
+				return is_folded(entry.face, entry.aim);
+			}));
+	}
+
+	// Whether the patch as a whole is closer to its targets than before, no face of it folded anew.
+	bool is_better(const Patch& patch) const
+	{
+		double gain = 0;
+		for (const PatchFace& entry : patch.faces) {
+			const double cosine = cosine_of(entry.face, entry.aim);
+			if (cosine < std::min(entry.cosine, FOLDED))
+				return false;
+			gain += entry.weight * (cosine - entry.cosine);
+		}
+		return gain >= 0;
+	}
+
+	bool unfold(const std::vector<Index>& folded)
+	{
+		bool moved = false;
+		for (int rings = 0; rings < TRIES; ++rings) {
+			const Patch patch = patch_around(folded, rings);
+			std::vector<Point> kept;
+			for (const Index vertex : patch.vertices)
+				kept.push_back(positions_[at(vertex)]);
+			const Index before = count_folded(patch);
+			if (before == 0)
+				break;
+			for (int step = 0; step < STEPS; ++step) {
+				step_to_targets(patch);
+				step_to_areas(patch);
+			}
+			if (count_folded(patch) < before && is_better(patch)) {
+				moved = true;
+				continue;
+			}
+			for (std::size_t k = 0; k < kept.size(); ++k)
+				positions_[at(patch.vertices[k])] = kept[k];
+		}
+		return moved;
+	}
+
+	const Workspace& workspace_;
+	const std::vector<Face>& faces_;
+	const std::vector<Point>& normals_;
+	std::vector<Point>& positions_;
+};
+
+} // namespace
+
+bool unfold_faces(
+	const Workspace& workspace, const std::vector<Point>& normals, std::vector<Point>& positions)
+{
+	return Unfolder(workspace, normals, positions).run();
+}
+
+} // namespace orthopoly

@@ -66,6 +66,7 @@ void Execution::begin_part(int part, int parts, int count)
 {
 	part_begin_ = static_cast<double>(part) / parts;
 	part_length_ = static_cast<double>(count) / parts;
+	poll(0);
 }
 
 void Execution::poll(double fraction_of_part)

@@ -38,7 +38,7 @@ public:
 	void begin_phase(double begin, double end, std::string words);
 
 	/// Loops that follow are part `part` (from 0) of `parts` equal ones of the phase, or so many of
-	/// them from there on.
+	/// them from there on. Throws Cancelled.
 	void begin_part(int part, int parts, int count = 1);
 
 	/// Runs the body over [0, count) in parts of `grain` indices. Small loops run on the calling

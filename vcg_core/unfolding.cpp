@@ -79,18 +79,18 @@ struct Surroundings {
 };
 
 /// A face near a fold.
-struct PatchFace {
+struct FoldFace {
 	Index face;
 	Aim aim;
-	/// Its weight in the sum over the patch.
+	/// Its weight in the sum over all of them.
 	double weight;
 	/// Before the first step.
 	double cosine;
 };
 
 /// A fold and what is around it.
-struct Patch {
-	std::vector<PatchFace> faces;
+struct Fold {
+	std::vector<FoldFace> faces;
 	/// Those that may move.
 	std::vector<Index> vertices;
 	/// Where in `vertices` each of them is.
@@ -124,11 +124,16 @@ public:
 	{
 	}
 
+	// One fold after another, since they may have vertices around them in common.
 	bool run()
 	{
 		bool moved = false;
-		for (const std::vector<Index>& fold : group(find_folded()))
-			moved = unfold(fold) || moved;
+		const std::vector<std::vector<Index>> groups = group(find_folded());
+		const int count = static_cast<int>(groups.size());
+		for (int k = 0; k < count; ++k) {
+			workspace_.execution.begin_part(k, count);
+			moved = unfold(groups[static_cast<std::size_t>(k)]) || moved;
+		}
 		return moved;
 	}
 
@@ -273,17 +278,17 @@ private:
 		return groups;
 	}
 
-	Patch patch_around(std::vector<Index> faces, int rings) const
+	Fold fold_around(std::vector<Index> faces, int rings) const
 	{
-		Patch patch;
+		Fold fold;
 		for (int ring = 0; ring <= rings; ++ring) {
-			patch.vertices.clear();
+			fold.vertices.clear();
 			for (const Index face : faces)
-				patch.vertices.insert(
-					patch.vertices.end(), faces_[at(face)].begin(), faces_[at(face)].end());
-			make_unique(patch.vertices);
+				fold.vertices.insert(
+					fold.vertices.end(), faces_[at(face)].begin(), faces_[at(face)].end());
+			make_unique(fold.vertices);
 			faces.clear();
-			for (const Index vertex : patch.vertices)
+			for (const Index vertex : fold.vertices)
 				faces.insert(
 					faces.end(),
 					workspace_.vertex_faces.begin(vertex),
@@ -293,11 +298,10 @@ private:
 		const auto stays = [&](Index vertex) {
 			return workspace_.mesh.is_fixed(vertex) || workspace_.edges.boundary[at(vertex)] != 0;
 		};
-		patch.vertices.erase(
-			std::remove_if(patch.vertices.begin(), patch.vertices.end(), stays),
-			patch.vertices.end());
-		for (std::size_t k = 0; k < patch.vertices.size(); ++k)
-			patch.places[patch.vertices[k]] = k;
+		fold.vertices.erase(
+			std::remove_if(fold.vertices.begin(), fold.vertices.end(), stays), fold.vertices.end());
+		for (std::size_t k = 0; k < fold.vertices.size(); ++k)
+			fold.places[fold.vertices[k]] = k;
 		for (const Index face : faces) {
 			Aim aim = aim_of(face);
 			const Point cross = cross_product(face);
@@ -305,9 +309,9 @@ private:
 			// The others keep what they have.
 			if (!is_folded(face, aim))
 				aim.area = square > 0 ? std::min(AREA, cross.dot(aim.witness) / square) : 0.0;
-			patch.faces.push_back({face, aim, cross.norm(), cosine_of(face, aim)});
+			fold.faces.push_back({face, aim, cross.norm(), cosine_of(face, aim)});
 		}
-		return patch;
+		return fold;
 	}
 
 	// To what it has to be like and what it has to look towards, both the same but at edges.
@@ -319,11 +323,11 @@ private:
 	}
 
 	// A step of eq. 12, weighted by area.
-	void step_to_targets(const Patch& patch)
+	void step_to_targets(const Fold& fold)
 	{
-		std::vector<Point> sums(patch.vertices.size(), Point::Zero());
-		std::vector<double> weights(patch.vertices.size(), 0);
-		for (const PatchFace& entry : patch.faces) {
+		std::vector<Point> sums(fold.vertices.size(), Point::Zero());
+		std::vector<double> weights(fold.vertices.size(), 0);
+		for (const FoldFace& entry : fold.faces) {
 			const Face& face = faces_[at(entry.face)];
 			const Point& n = entry.aim.target;
 			if (n.isZero(0))
@@ -333,23 +337,23 @@ private:
 			const Point centroid =
 				first +
 				((positions_[at(face[1])] - first) + (positions_[at(face[2])] - first)) / 3.0;
-			patch.for_each_corner(face, [&](std::size_t k, std::size_t place) {
+			fold.for_each_corner(face, [&](std::size_t k, std::size_t place) {
 				sums[place] += area * n.dot(centroid - positions_[at(face[k])]) * n;
 				weights[place] += area;
 			});
 		}
 		for (std::size_t k = 0; k < sums.size(); ++k) {
 			if (weights[k] > 0)
-				positions_[at(patch.vertices[k])] += sums[k] / weights[k];
+				positions_[at(fold.vertices[k])] += sums[k] / weights[k];
 		}
 	}
 
 	// The mean of the least moves that give each face its area.
-	void step_to_areas(const Patch& patch)
+	void step_to_areas(const Fold& fold)
 	{
-		std::vector<Point> sums(patch.vertices.size(), Point::Zero());
-		std::vector<int> counts(patch.vertices.size(), 0);
-		for (const PatchFace& entry : patch.faces) {
+		std::vector<Point> sums(fold.vertices.size(), Point::Zero());
+		std::vector<int> counts(fold.vertices.size(), 0);
+		for (const FoldFace& entry : fold.faces) {
 			const Face& face = faces_[at(entry.face)];
 			const double side = longest_side_squared(face);
 			const double missing =
@@ -358,7 +362,7 @@ private:
 				continue;
 			std::array<Point, 3> gradients;
 			double square = 0;
-			patch.for_each_corner(face, [&](std::size_t k, std::size_t) {
+			fold.for_each_corner(face, [&](std::size_t k, std::size_t) {
 				const Point& next = positions_[at(face[(k + 1) % 3])];
 				const Point& last = positions_[at(face[(k + 2) % 3])];
 				gradients[k] = (next - last).cross(entry.aim.witness);
@@ -366,30 +370,30 @@ private:
 			});
 			// No further than about the longest side, however little a move changes.
 			square = std::max(square, 0.25 * side);
-			patch.for_each_corner(face, [&](std::size_t k, std::size_t place) {
+			fold.for_each_corner(face, [&](std::size_t k, std::size_t place) {
 				sums[place] += missing / square * gradients[k];
 				++counts[place];
 			});
 		}
 		for (std::size_t k = 0; k < sums.size(); ++k) {
 			if (counts[k] > 0)
-				positions_[at(patch.vertices[k])] += sums[k] / counts[k];
+				positions_[at(fold.vertices[k])] += sums[k] / counts[k];
 		}
 	}
 
-	Index count_folded(const Patch& patch) const
+	Index count_folded(const Fold& fold) const
 	{
 		return static_cast<Index>(
-			std::count_if(patch.faces.begin(), patch.faces.end(), [&](const PatchFace& entry) {
+			std::count_if(fold.faces.begin(), fold.faces.end(), [&](const FoldFace& entry) {
 				return is_folded(entry.face, entry.aim);
 			}));
 	}
 
-	// Whether the patch as a whole is closer to its targets than before, no face of it folded anew.
-	bool is_better(const Patch& patch) const
+	// Whether all faces together are closer to its targets than before, no face of it folded anew.
+	bool is_better(const Fold& fold) const
 	{
 		double gain = 0;
-		for (const PatchFace& entry : patch.faces) {
+		for (const FoldFace& entry : fold.faces) {
 			const double cosine = cosine_of(entry.face, entry.aim);
 			if (cosine < std::min(entry.cosine, FOLDED))
 				return false;
@@ -402,23 +406,23 @@ private:
 	{
 		bool moved = false;
 		for (int rings = 0; rings < TRIES; ++rings) {
-			const Patch patch = patch_around(folded, rings);
+			const Fold fold = fold_around(folded, rings);
 			std::vector<Point> kept;
-			for (const Index vertex : patch.vertices)
+			for (const Index vertex : fold.vertices)
 				kept.push_back(positions_[at(vertex)]);
-			const Index before = count_folded(patch);
+			const Index before = count_folded(fold);
 			if (before == 0)
 				break;
 			for (int step = 0; step < STEPS; ++step) {
-				step_to_targets(patch);
-				step_to_areas(patch);
+				step_to_targets(fold);
+				step_to_areas(fold);
 			}
-			if (count_folded(patch) < before && is_better(patch)) {
+			if (count_folded(fold) < before && is_better(fold)) {
 				moved = true;
 				continue;
 			}
 			for (std::size_t k = 0; k < kept.size(); ++k)
-				positions_[at(patch.vertices[k])] = kept[k];
+				positions_[at(fold.vertices[k])] = kept[k];
 		}
 		return moved;
 	}

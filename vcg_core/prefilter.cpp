@@ -44,15 +44,14 @@ Point way_into_outline(
 	return found == 2 ? Point(sum / 2) : Point(Point::Zero());
 }
 
-// One umbrella step from `from` to `to`: the mean of the neighbours, each weighed by the faces
-// shared.
+// One umbrella step: the mean of the neighbours, each weighed by the faces shared.
 void umbrella_step(
 	const Workspace& workspace,
 	double step,
 	const std::vector<std::uint8_t>& only,
-	std::vector<Point>& positions)
+	const std::vector<Point>& positions,
+	std::vector<Point>& moved)
 {
-	std::vector<Point> moved(positions.size());
 	workspace.execution.parallel_for(
 		workspace.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
 			for (Index i = begin; i < end; ++i) {
@@ -81,7 +80,6 @@ void umbrella_step(
 					moved[at(i)] += step * way_into_outline(workspace, positions, i);
 			}
 		});
-	positions.swap(moved);
 }
 
 } // namespace
@@ -92,10 +90,11 @@ void taubin_smooth(
 	std::vector<Point>& positions,
 	const std::vector<std::uint8_t>& only)
 {
+	std::vector<Point> shrunken(pairs > 0 ? positions.size() : 0);
 	for (double left = pairs; left > 0; left -= 1) {
 		const double share = std::min(1.0, left);
-		umbrella_step(workspace, share * SHRINK, only, positions);
-		umbrella_step(workspace, share * INFLATE, only, positions);
+		umbrella_step(workspace, share * SHRINK, only, positions, shrunken);
+		umbrella_step(workspace, share * INFLATE, only, shrunken, positions);
 	}
 }
 
@@ -104,14 +103,10 @@ std::vector<std::uint8_t> folded_vertices(
 {
 	const std::vector<Face>& faces = workspace.mesh.faces;
 	const IndexLists& around = workspace.vertex_faces;
-	std::vector<Point> sums(positions.size(), Point::Zero());
-	workspace.execution.parallel_for(
-		workspace.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
-			for (Index i = begin; i < end; ++i) {
-				for (const Index* it = around.begin(i); it != around.end(i); ++it)
-					sums[at(i)] += face_cross_product(positions, faces[at(*it)]);
-			}
-		});
+	std::vector<Point> sums(positions.size());
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		sums[i] = cross_product_around(workspace, positions, static_cast<Index>(i));
+	});
 	std::vector<std::uint8_t> folded(faces.size(), 0);
 	workspace.execution.parallel_for(
 		workspace.mesh.face_count(), GRAIN, [&](Index begin, Index end, int) {

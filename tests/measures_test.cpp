@@ -5,7 +5,6 @@
 #include "errors.h"
 #include "noise.h"
 #include "shapes.h"
-#include "step_fixture.h"
 #include "test_support.h"
 
 #include <Eigen/Geometry>

@@ -3,14 +3,14 @@
 
 # add_orthopoly_vcg(TARGET VCGLIB_DIR)
 #
-# A static library of mesh_io.cpp and closest_point.cpp against one vcglib tree. vcglib is inline code
+# A static library of mesh_io.cpp against one vcglib tree. vcglib is inline code
 # whose layout differs between versions, so two versions of it must never meet in one binary.
 function(add_orthopoly_vcg TARGET VCGLIB)
 	if(NOT EXISTS "${VCGLIB}/vcg/complex/complex.h")
 		message(FATAL_ERROR "${VCGLIB} is not a vcglib tree: vcg/complex/complex.h is not in it")
 	endif()
 	set(core "${PROJECT_SOURCE_DIR}/vcg_core")
-	add_library(${TARGET} STATIC "${core}/mesh_io.cpp" "${core}/closest_point.cpp" "${core}/measures.cpp")
+	add_library(${TARGET} STATIC "${core}/mesh_io.cpp")
 	target_include_directories(${TARGET} SYSTEM PUBLIC "${VCGLIB}")
 	target_link_libraries(${TARGET} PUBLIC orthopoly_core)
 	orthopoly_warnings(${TARGET} CONVERSION)

@@ -228,3 +228,38 @@ TEST_CASE("meshes without a surface are refused", "[measures]")
 	CHECK_THROWS_WITH(measure(make_nan_coordinate(), mesh), Contains("vertex 7"));
 	CHECK_THROWS_WITH(measure(mesh, make_nan_coordinate()), Contains("vertex 7"));
 }
+
+TEST_CASE("The measures are the same on any number of threads", "[measures][parallel]")
+{
+	const TriangleMesh clean = make_part(20000);
+	const TriangleMesh mesh = noisy(clean, 0.3);
+	// Pairs by number and by the closest point.
+	TriangleMesh other = clean;
+	other.faces.pop_back();
+	for (const TriangleMesh& reference : {clean, other}) {
+		MeasureOptions options;
+		options.threads = 1;
+		const ErrorMeasures expected = measure(mesh, reference, options);
+		CHECK(expected.mean_angle > 10);
+		options.threads = 3;
+		const ErrorMeasures found = measure(mesh, reference, options);
+		CHECK(found.vertex_error == expected.vertex_error);
+		CHECK(found.mean_angle == expected.mean_angle);
+		CHECK(found.face_angles == expected.face_angles);
+		CHECK(found.vertex_distances == expected.vertex_distances);
+	}
+}
+
+TEST_CASE("One reference measures several meshes", "[measures]")
+{
+	const TriangleMesh clean = make_part(2000);
+	const ReferenceMeasure reference(clean);
+	for (const double sigma : {0.1, 0.3}) {
+		const TriangleMesh mesh = noisy(clean, sigma);
+		const ErrorMeasures expected = measure(mesh, clean);
+		const ErrorMeasures found = reference.measure(mesh);
+		CHECK(found.mean_angle == expected.mean_angle);
+		CHECK(found.relative_vertex_error == expected.relative_vertex_error);
+		CHECK(found.mean_angle > 5);
+	}
+}

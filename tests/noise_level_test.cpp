@@ -53,6 +53,21 @@ TEST_CASE("The noise is estimated on every surface, of every kind and strength",
 	}
 }
 
+TEST_CASE("The noise is estimated where there is an edge in every ring", "[noise_level]")
+{
+	const auto direction =
+		GENERATE(NoiseDirection::Normal, NoiseDirection::Random, NoiseDirection::Isotropic);
+	for (const Index faces : {2000, 4000}) {
+		const TriangleMesh clean = make_part(faces);
+		for (const double sigma : {0.05, 0.1, 0.2, 0.3, 0.45, 0.6}) {
+			CAPTURE(faces, static_cast<int>(direction), sigma);
+			const TriangleMesh mesh = noisy(clean, sigma, direction);
+			const double expected = true_level(clean, mesh);
+			CHECK(std::abs(estimated(mesh) - expected) < std::max(0.02, 0.15 * expected));
+		}
+	}
+}
+
 TEST_CASE("Clean meshes read as clean", "[noise_level]")
 {
 	for (const std::string name :

@@ -53,7 +53,7 @@ TEST_CASE("Outliers are found and put back", "[outliers]")
 	}
 	CHECK(found.count == std::count(found.flags.begin(), found.flags.end(), 1));
 	// The others are too near to tell or on edges; hardly any is taken that was not moved.
-	CHECK(right > 0.45 * moved);
+	CHECK(right > 0.4 * moved);
 	CHECK(right > 0.9 * found.count);
 	const double before = measure(mesh, truth).mean_angle;
 	CHECK(measure(with_positions(mesh, found.positions), truth).mean_angle < 0.6 * before);

@@ -7,39 +7,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
-// The tree uses the barycentre of the first without including it.
-#include <vcg/space/triangle3.h>
-
-#include <vcg/space/index/aabb_binary_tree/aabb_binary_tree.h>
-
 namespace orthopoly {
 
 namespace {
 
-using VcgPoint = vcg::Point3<double>;
+// A box costs about as much to look at as half a triangle.
+constexpr Index FACES_PER_LEAF = 4;
 
-// Median splits stop here; vcglib's own default.
-constexpr unsigned FACES_PER_LEAF = 10;
-
-// Larger than any squared distance in the unit box may grow to, and still far from overflow when
-// squared.
-constexpr double UNBOUNDED = 1e100;
-
-VcgPoint to_vcg(const Point& point)
-{
-	return {point.x(), point.y(), point.z()};
-}
-
-Point from_vcg(const VcgPoint& point)
-{
-	return {point[0], point[1], point[2]};
-}
+// Halving two thousand million faces down to a leaf takes 29 levels, and each leaves one half for
+// later.
+constexpr std::size_t DEEPEST = 32;
 
 struct Triangle {
 	std::array<Point, 3> corners;
@@ -75,63 +57,41 @@ Point closest_on_triangle(const Point& query, const Triangle& triangle)
 	return closest;
 }
 
-// What vcglib's tree asks of the objects it holds.
-struct GetPointer {
-	const Triangle* operator()(const Triangle& triangle) const { return &triangle; }
-};
-struct GetBox {
-	void operator()(const Triangle& triangle, vcg::Box3<double>& box) const
-	{
-		box.SetNull();
-		for (const Point& corner : triangle.corners)
-			box.Add(to_vcg(corner));
-	}
-};
-struct GetBarycenter {
-	void operator()(const Triangle& triangle, VcgPoint& barycenter) const
-	{
-		const auto& [a, b, c] = triangle.corners;
-		barycenter = to_vcg((a + b + c) / 3.0);
-	}
-};
-struct GetDistance {
-	using QueryType = VcgPoint;
-	bool operator()(
-		const Triangle& triangle, const VcgPoint& query, double& distance, VcgPoint& closest) const
-	{
-		const Point point = closest_on_triangle(from_vcg(query), triangle);
-		const double found = (point - from_vcg(query)).norm();
-		if (!(found < distance))
-			return false;
-		distance = found;
-		closest = to_vcg(point);
-		return true;
-	}
+using Box = Eigen::AlignedBox3d;
+
+Box box_of(const Triangle& triangle)
+{
+	Box box(triangle.corners[0]);
+	return box.extend(triangle.corners[1]).extend(triangle.corners[2]);
+}
+
+// A triangle while the tree is built: small, because it is moved once a level.
+struct Item {
+	Point centroid;
+	Index triangle;
 };
 
-// vcglib's tree splits around the last of its objects, which takes quadratic time where they come
-// in order, as the faces of a mesh do. A fixed shuffle (a linear congruential generator) undoes
-// that.
-void shuffle(std::vector<Triangle>& triangles)
-{
-	std::uint64_t state = 1;
-	for (std::size_t i = triangles.size(); i > 1; --i) {
-		state = state * 6364136223846793005U + 1442695040888963407U;
-		std::swap(triangles[i - 1], triangles[(state >> 33U) % i]);
-	}
-}
+// Its first half is the next node, the second half starts at `second`; a leaf has none and holds
+// triangles [begin, end).
+struct Node {
+	Box box;
+	Index begin;
+	Index end;
+	Index second = 0;
+};
 
 } // namespace
 
-// A grid would have to walk through all the empty space between a far query and the mesh; the tree
-// does not.
+// A grid would have to walk through all the empty space between a far query and the mesh; a tree of
+// boxes does not. That of vcglib (2025.07) can do neither two queries at a time nor one without
+// reserving room for all triangles, and took eight times as long over a million faces.
 class ClosestPointIndex::Tree {
 public:
 	explicit Tree(const TriangleMesh& mesh)
 	{
-		// The tree works in a unit box around the origin, so that neither a tiny nor a distant mesh
-		// comes near to the tolerances inside.
-		Eigen::AlignedBox3d box;
+		// The tree works in a unit box around the origin, so that areas and squares of tiny meshes
+		// are still numbers.
+		Box box;
 		for (const Face& face : mesh.faces) {
 			for (const Index vertex : face)
 				box.extend(mesh.positions[static_cast<std::size_t>(vertex)]);
@@ -140,6 +100,65 @@ public:
 			center_ = box.center();
 			scale_ = box.sizes().maxCoeff();
 		}
+		const std::vector<Triangle> triangles = triangles_of(mesh);
+		if (triangles.empty())
+			throw InvalidMesh(
+				"none of the " + std::to_string(mesh.face_count()) +
+				" faces of the reference has an area, so no point lies on it; choose another reference");
+		std::vector<Item> items;
+		items.reserve(triangles.size());
+		for (const Triangle& triangle : triangles) {
+			const auto& [a, b, c] = triangle.corners;
+			items.push_back({(a + b + c) / 3.0, static_cast<Index>(items.size())});
+		}
+		nodes_.reserve(items.size());
+		divide(items, 0, static_cast<Index>(items.size()));
+		triangles_.reserve(triangles.size());
+		for (const Item& item : items)
+			triangles_.push_back(triangles[static_cast<std::size_t>(item.triangle)]);
+		for (std::size_t i = nodes_.size(); i-- > 0;)
+			nodes_[i].box = box_of_node(i);
+	}
+
+	ClosestPoint find(const Point& query) const
+	{
+		const Point at = normalized(query);
+		double best = std::numeric_limits<double>::infinity();
+		ClosestPoint result;
+		// Nodes to be looked at, with their squared distances.
+		std::array<std::pair<double, std::size_t>, DEEPEST> later;
+		std::size_t waiting = 0;
+		later[waiting++] = {0, 0};
+		while (waiting > 0) {
+			auto [bound, node] = later[--waiting];
+			while (bound < best && nodes_[node].second != 0) {
+				std::size_t near = node + 1;
+				auto far = static_cast<std::size_t>(nodes_[node].second);
+				bound = nodes_[near].box.squaredExteriorDistance(at);
+				double far_bound = nodes_[far].box.squaredExteriorDistance(at);
+				if (far_bound < bound) {
+					std::swap(near, far);
+					std::swap(bound, far_bound);
+				}
+				if (far_bound < best)
+					later[waiting++] = {far_bound, far};
+				node = near;
+			}
+			if (bound < best)
+				look_through(nodes_[node], at, best, result);
+		}
+		result.distance = scale_ * std::sqrt(best);
+		result.position = center_ + scale_ * result.position;
+		return result;
+	}
+
+private:
+	Point normalized(const Point& point) const { return (point - center_) / scale_; }
+
+	std::vector<Triangle> triangles_of(const TriangleMesh& mesh) const
+	{
+		std::vector<Triangle> triangles;
+		triangles.reserve(mesh.faces.size());
 		for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
 			const Face& face = mesh.faces[i];
 			if (is_degenerate(mesh.positions, face))
@@ -148,59 +167,67 @@ public:
 			triangle.face = static_cast<Index>(i);
 			for (std::size_t k = 0; k < 3; ++k)
 				triangle.corners[k] = normalized(mesh.positions[static_cast<std::size_t>(face[k])]);
-			triangles_.push_back(triangle);
+			triangles.push_back(triangle);
 		}
-		if (triangles_.empty())
-			throw InvalidMesh(
-				"none of the " + std::to_string(mesh.face_count()) +
-				" faces of the reference has an area, so no point lies on it; choose another reference");
-		shuffle(triangles_);
-		GetPointer get_pointer;
-		GetBox get_box;
-		GetBarycenter get_barycenter;
-		tree_.Set(
-			triangles_.cbegin(),
-			triangles_.cend(),
-			get_pointer,
-			get_box,
-			get_barycenter,
-			FACES_PER_LEAF);
+		return triangles;
 	}
 
-	ClosestPoint find(const Point& query)
+	// Adds the node of items [begin, end), which are put into order, and all below it.
+	void divide(std::vector<Item>& items, Index begin, Index end)
 	{
-		const VcgPoint at = to_vcg(normalized(query));
-		GetDistance get_distance;
-		double distance = UNBOUNDED;
-		VcgPoint closest(0, 0, 0);
-		int no_marker = 0;
-		const Triangle* triangle =
-			tree_.GetClosest(get_distance, no_marker, at, UNBOUNDED, distance, closest);
-		if (triangle == nullptr)
-			triangle = &closest_of_all(at, distance, closest);
-		return {center_ + scale_ * from_vcg(closest), scale_ * distance, triangle->face};
+		const std::size_t node = nodes_.size();
+		nodes_.push_back({Box(), begin, end});
+		if (end - begin <= FACES_PER_LEAF)
+			return;
+		Box centroids;
+		for (Index i = begin; i < end; ++i)
+			centroids.extend(items[static_cast<std::size_t>(i)].centroid);
+		Eigen::Index axis = 0;
+		centroids.sizes().maxCoeff(&axis);
+		const Index middle = begin + (end - begin) / 2;
+		std::nth_element(
+			items.begin() + begin,
+			items.begin() + middle,
+			items.begin() + end,
+			[axis](const Item& a, const Item& b) {
+				return a.centroid[axis] != b.centroid[axis] ? a.centroid[axis] < b.centroid[axis] :
+															  a.triangle < b.triangle;
+			});
+		divide(items, begin, middle);
+		nodes_[node].second = static_cast<Index>(nodes_.size());
+		divide(items, middle, end);
 	}
 
-private:
-	Point normalized(const Point& point) const { return (point - center_) / scale_; }
-
-	// The tree's bounds are rounded: from a million mesh sizes away no face may seem to be within
-	// them.
-	const Triangle& closest_of_all(const VcgPoint& query, double& distance, VcgPoint& closest) const
+	// That of the triangles in a leaf, of the two halves else, which have theirs already.
+	Box box_of_node(std::size_t i) const
 	{
-		distance = std::numeric_limits<double>::infinity();
-		const Triangle* best = &triangles_.front();
-		for (const Triangle& triangle : triangles_) {
-			if (GetDistance()(triangle, query, distance, closest))
-				best = &triangle;
+		const Node& node = nodes_[i];
+		if (node.second != 0)
+			return nodes_[i + 1].box.merged(nodes_[static_cast<std::size_t>(node.second)].box);
+		Box box;
+		for (Index k = node.begin; k < node.end; ++k)
+			box.extend(box_of(triangles_[static_cast<std::size_t>(k)]));
+		return box;
+	}
+
+	void look_through(const Node& leaf, const Point& at, double& best, ClosestPoint& result) const
+	{
+		for (Index k = leaf.begin; k < leaf.end; ++k) {
+			const Triangle& triangle = triangles_[static_cast<std::size_t>(k)];
+			const Point point = closest_on_triangle(at, triangle);
+			const double found = (point - at).squaredNorm();
+			if (found < best) {
+				best = found;
+				result.position = point;
+				result.face = triangle.face;
+			}
 		}
-		return *best;
 	}
 
 	Point center_ = Point::Zero();
 	double scale_ = 1;
 	std::vector<Triangle> triangles_;
-	vcg::AABBBinaryTreeIndex<const Triangle, double> tree_;
+	std::vector<Node> nodes_;
 };
 
 ClosestPointIndex::ClosestPointIndex(const TriangleMesh& mesh) : tree_(std::make_unique<Tree>(mesh))

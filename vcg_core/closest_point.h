@@ -16,7 +16,7 @@ struct ClosestPoint {
 	Index face = -1;
 };
 
-/// Finds closest points on a whole mesh, through vcglib's spatial index.
+/// Finds closest points on a whole mesh, by a tree of boxes.
 class ClosestPointIndex {
 public:
 	/// Throws InvalidMesh for a mesh without a face that has an area. The mesh may go away
@@ -26,7 +26,7 @@ public:
 	ClosestPointIndex(ClosestPointIndex&&) noexcept;
 	ClosestPointIndex& operator=(ClosestPointIndex&&) noexcept;
 
-	/// The closest point of the whole surface, however far. Not safe to call from several threads.
+	/// The closest point of the whole surface, however far. Safe to call from several threads.
 	ClosestPoint find(const Point& query) const;
 
 private:

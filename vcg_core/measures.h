@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "closest_point.h"
 #include "triangle_mesh.h"
 
 #include <vector>
@@ -41,10 +42,28 @@ struct MeasureOptions {
 	/// Faces and vertices farther than this from the reference are not measured (a partial
 	/// reference); the caller's length unit. Not positive: no limit.
 	double max_distance = 0;
+	/// Threads to run on; 0 means one per processor. Does not change the result.
+	int threads = 0;
 };
 
-/// Measures a mesh against a reference. Faces pair by index where both have the same faces, else by
-/// the closest point. Throws InvalidMesh where either has no face with an area.
+/// A reference that several meshes are measured against.
+class ReferenceMeasure {
+public:
+	/// Throws InvalidMesh where the reference has no face with an area.
+	explicit ReferenceMeasure(TriangleMesh reference, const MeasureOptions& options = {});
+
+	/// Measures a mesh. Faces pair by index where both have the same faces, else by the closest
+	/// point. Throws InvalidMesh where the mesh has no face with an area.
+	ErrorMeasures measure(const TriangleMesh& mesh) const;
+
+private:
+	TriangleMesh reference_;
+	MeasureOptions options_;
+	ClosestPointIndex index_;
+	double mean_edge_length_;
+};
+
+/// Measures one mesh against a reference, as `ReferenceMeasure` does.
 ErrorMeasures measure(
 	const TriangleMesh& mesh, const TriangleMesh& reference, const MeasureOptions& options = {});
 

@@ -4,6 +4,8 @@
 #include "local_heights.h"
 #include "sampling.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -33,10 +35,126 @@ constexpr Index SAMPLES = 20000;
 constexpr int WIDE_RINGS = 4;
 constexpr std::size_t WIDE_SAMPLES = 500;
 
+// Where a mesh is so coarse that edges are everywhere, polynomials over whole rings take them for
+// noise. So do others, over the faces alone whose normals are within this cosine (37 degrees) of
+// the vertex's. They need no share so low, and a few of them tell what the level is without the
+// edges; it is taken where it is lower by more than what choosing the faces takes away.
+constexpr double SIMILAR = 0.8;
+constexpr Quantile SIMILAR_FLAT = {0.35, -0.3853};
+constexpr std::size_t SIMILAR_SAMPLES = 5000;
+constexpr double SIMILAR_LEVEL = 0.97;
+
+// Between these levels, in edge lengths, the normals of the smoothed surface come to scatter as
+// far as that, and the choice takes noise away.
+constexpr double SIMILAR_TO = 0.33;
+constexpr double SIMILAR_NEVER = 0.5;
+
 constexpr Index GRAIN = 64;
 
 // Rings of vertices of a polynomial.
 constexpr int RINGS = 2;
+
+/// A residual variance, negative where there is none, and its degrees of freedom.
+struct Variance {
+	double value = -1;
+	double free = 0;
+};
+
+/// Quadratic height polynomials over the similar faces around vertices.
+class SimilarHeights {
+public:
+	SimilarHeights(
+		const Workspace& workspace,
+		const std::vector<Point>& noisy,
+		const std::vector<Point>& smooth) :
+			workspace_(workspace),
+			noisy_(noisy), smooth_(smooth), ring_(workspace),
+			stamps_(workspace.mesh.positions.size(), -1)
+	{
+	}
+
+	Variance fit(Index vertex)
+	{
+		Point normal = cross_product_around(workspace_, smooth_, vertex);
+		const double length = normal.norm();
+		if (!(length > 0))
+			return {};
+		normal /= length;
+		collect(vertex, normal);
+		if (members_.size() < TERMS + FEWEST_FREE)
+			return {};
+		return {
+			residual(smooth_[at(vertex)], normal), static_cast<double>(members_.size() - TERMS)};
+	}
+
+private:
+	static constexpr std::size_t TERMS = 6;
+	static constexpr std::size_t FEWEST_FREE = 4;
+	using Terms = Eigen::Matrix<double, static_cast<int>(TERMS), 1>;
+	using Gram = Eigen::Matrix<double, static_cast<int>(TERMS), static_cast<int>(TERMS)>;
+
+	static std::size_t at(Index index) { return static_cast<std::size_t>(index); }
+
+	// The corners of the similar faces around the vertex and its neighbours.
+	void collect(Index vertex, const Point& normal)
+	{
+		ring_.collect(vertex, 1);
+		members_.clear();
+		const IndexLists& around = workspace_.vertex_faces;
+		for (const Index i : ring_.vertices()) {
+			for (const Index* face = around.begin(i); face != around.end(i); ++face) {
+				const Face& corners = workspace_.mesh.faces[at(*face)];
+				const Point cross = face_cross_product(smooth_, corners);
+				if (!(cross.dot(normal) > SIMILAR * cross.norm()))
+					continue;
+				for (const Index corner : corners) {
+					if (stamps_[at(corner)] != vertex)
+						members_.push_back(corner);
+					stamps_[at(corner)] = vertex;
+				}
+			}
+		}
+	}
+
+	// The residual variance over the members; negative where they do not fix a quadratic.
+	double residual(const Point& center, const Point& normal) const
+	{
+		const Point tangent = normal.unitOrthogonal();
+		const Point bitangent = normal.cross(tangent);
+		const double scale = 1 / workspace_.mean_edge_length;
+		Gram gram = Gram::Zero();
+		Terms moments = Terms::Zero();
+		double energy = 0;
+		for (const Index i : members_) {
+			const Point node = scale * (smooth_[at(i)] - center);
+			const double x = node.dot(tangent);
+			const double y = node.dot(bitangent);
+			const double height = (noisy_[at(i)] - center).dot(normal);
+			Terms terms;
+			terms << 1, x, y, x * x, x * y, y * y;
+			gram.selfadjointView<Eigen::Lower>().rankUpdate(terms);
+			moments += height * terms;
+			energy += height * height;
+		}
+		const Eigen::LLT<Gram> cholesky(gram);
+		if (cholesky.info() != Eigen::Success || !(cholesky.rcond() > LEAST_CONDITION))
+			return -1;
+		const Terms solved = cholesky.matrixL().solve(moments);
+		return std::max(0.0, energy - solved.squaredNorm()) /
+			   static_cast<double>(members_.size() - TERMS);
+	}
+
+	// Nodes nearly on a conic do not fix a quadratic.
+	static constexpr double LEAST_CONDITION = 1e-8;
+
+	const Workspace& workspace_;
+	const std::vector<Point>& noisy_;
+	const std::vector<Point>& smooth_;
+	VertexRings ring_;
+	std::vector<Index> members_;
+	/// The vertex each was last collected for.
+	std::vector<Index> stamps_;
+};
 
 // How noise across the normals lengthens edges, per square of it in edge lengths: an edge takes
 // half of the noise of both ends across itself, 2 / 2, and a little more in the next order.
@@ -78,16 +196,55 @@ double clean_edge_length(
 		smoothed, mean_edge_length(workspace, flattened) / (1 + LENGTHENING * relative * relative));
 }
 
+// The level that so many variances tell; zero where there is none.
+double level(const std::vector<Variance>& variances, const Quantile& wanted)
+{
+	std::vector<double> values;
+	for (const Variance& variance : variances) {
+		if (variance.value >= 0)
+			values.push_back(variance.value / quantile_of_variance(wanted, variance.free));
+	}
+	return std::sqrt(quantile(values, wanted.share));
+}
+
+std::vector<Variance> similar_variances(
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const std::vector<Point>& smooth,
+	const std::vector<Index>& sample)
+{
+	const std::size_t every = std::max<std::size_t>(1, sample.size() / SIMILAR_SAMPLES);
+	std::vector<Variance> variances(sample.size() / every);
+	std::vector<SimilarHeights> heights(
+		static_cast<std::size_t>(workspace.execution.threads()),
+		SimilarHeights(workspace, positions, smooth));
+	workspace.execution.parallel_for(
+		static_cast<Index>(variances.size()), GRAIN, [&](Index begin, Index end, int worker) {
+			for (Index i = begin; i < end; ++i) {
+				const auto at = static_cast<std::size_t>(i);
+				variances[at] = heights[static_cast<std::size_t>(worker)].fit(sample[every * at]);
+			}
+		});
+	return variances;
+}
+
+// The level of whole rings, or the one of similar faces where that shows edges in the first.
+double without_edges(double whole, double similar)
+{
+	const double without = similar / SIMILAR_LEVEL;
+	if (!(without > 0 && without < whole))
+		return whole;
+	const double share =
+		std::max(0.0, std::min(1.0, (SIMILAR_NEVER - without) / (SIMILAR_NEVER - SIMILAR_TO)));
+	return whole + share * (without - whole);
+}
+
 } // namespace
 
 NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions)
 {
 	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
 	const std::vector<Index> sample = sample_by_value(areas_around(workspace, positions), SAMPLES);
-	struct Variance {
-		double value = -1;
-		double free = 0;
-	};
 	std::vector<Variance> variances(sample.size());
 	std::vector<LocalHeights> heights(
 		static_cast<std::size_t>(workspace.execution.threads()),
@@ -113,22 +270,16 @@ NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<
 			}
 		});
 	ratios.erase(std::remove(ratios.begin(), ratios.end(), -1), ratios.end());
-	const auto level = [&](const Quantile& wanted) {
-		std::vector<double> values;
-		for (const Variance& variance : variances) {
-			if (variance.value >= 0)
-				values.push_back(variance.value / quantile_of_variance(wanted, variance.free));
-		}
-		return std::sqrt(quantile(values, wanted.share));
-	};
 	NoiseLevels result;
 	if (!ratios.empty())
 		result.median_ratio = quantile(ratios, 0.5);
-	const double flat = level(FLAT);
+	const double flat = level(variances, FLAT);
 	const double length = clean_edge_length(workspace, positions, smooth, flat);
 	if (length > 0) {
-		result.flat = flat / length;
-		result.ordinary = level(ORDINARY) / length;
+		const std::vector<Variance> similar =
+			similar_variances(workspace, positions, smooth, sample);
+		result.flat = without_edges(flat / length, level(similar, SIMILAR_FLAT) / length);
+		result.ordinary = level(variances, ORDINARY) / length;
 	}
 	return result;
 }

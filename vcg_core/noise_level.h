@@ -11,8 +11,9 @@ namespace orthopoly {
 ///
 /// Around each of a sample of vertices a cubic height polynomial is fitted to the 2-ring; what it
 /// leaves is noise where the surface is smooth. A low quantile of the residual variances, each
-/// normalised by its degrees of freedom, keeps edges out. Zero where no vertex has neighbours
-/// enough. O(#V) time.
+/// normalised by its degrees of freedom, keeps edges out. Where edges are too close to each other
+/// for that, so that polynomials over the similar faces alone leave less, the level is what these
+/// leave. Zero where no vertex has neighbours enough. O(#V) time.
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions);
 
 /// The same at two quantiles, and what kind of noise it is.

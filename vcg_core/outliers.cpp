@@ -38,8 +38,9 @@ constexpr double SUSPICIOUS = 0.56;
 constexpr double TOLERANCE = 2;
 
 // Deviations from which a vertex is an outlier: past nearly all Gaussian noise, whose deviation is
-// known from some twenty values only.
-constexpr double OUTLYING = 5;
+// known from some twenty values only, and past most vertices beside an edge, where it is less still
+// that the others around say.
+constexpr double OUTLYING = 6;
 
 // A vertex further off than so many times the ordinary outlier is a feature.
 constexpr double FURTHEST = 4;

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Seconds and memory of the denoisers, side by side on the same meshes, doubling in size.
 
-    speed.py [--max-faces N] [--methods NAME,...] [--repeats N] [--limit SECONDS]
+    speed.py [--max-faces N | --faces N,...] [--methods NAME,...] [--repeats N] [--limit SECONDS]
+
+For one tool at one size: speed.py --methods meshdenoiser --faces 1000000 --limit 3600.
 
 The mesh is `part` of generate_meshes with noise along its normals. Every denoiser runs once to warm up
 and is timed then: the median of --repeats runs, without reading and writing files. Memory is the peak
@@ -91,16 +93,29 @@ def run_mesh_denoiser(_, mesh, threads, arguments):
 	return {"seconds": seconds, "memory": memory}
 
 
-def run_meshlab(filter_name, mesh, _, arguments):
-	return json.loads(tools.call(
+def run_meshlab(filter_name, mesh, _, arguments, reference=""):
+	said = tools.call(
 		sys.executable, __file__, "--meshlab-filter", filter_name, mesh, arguments.repeats,
-		arguments.budget).splitlines()[-1])
+		arguments.budget, reference)
+	result = json.loads(next(line for line in said.splitlines() if line.startswith('{"seconds"')))
+	# Our filter says how long it took without the layer's share; the first run is not counted.
+	core = [float(word) for word in re.findall(r"denoised in (\S+) seconds", said)][1:]
+	if core:
+		result["core"] = core
+	return result
 
 
-def time_meshlab_filter(filter_name, path, repeats, budget):
+def run_meshlab_compared(filter_name, mesh, _, arguments):
+	return run_meshlab(filter_name, mesh, _, arguments, mesh.with_name("clean.ply"))
+
+
+def time_meshlab_filter(filter_name, path, repeats, budget, reference):
 	"""What run_meshlab calls in a process of its own. Every run gets the noisy mesh anew."""
 	import pymeshlab
 
+	# Filters log to standard error; it is wanted with the rest.
+	os.dup2(1, 2)
+	given = {"compare_with_reference": True, "reference": 1} if reference else {}
 	if filter_name.startswith("apply_coord_orthogonal"):
 		plugins = sorted((tools.BUILD / "plugins").glob("pymeshlab-*/libfilter_orthopoly.so"))
 		pymeshlab.load_plugin(str(plugins[-1]))
@@ -112,8 +127,11 @@ def time_meshlab_filter(filter_name, path, repeats, budget):
 	while len(seconds) <= repeats:
 		if len(seconds) > 1 and time.monotonic() - started > budget:
 			break
-		meshes = pymeshlab.MeshSet()
+		meshes = pymeshlab.MeshSet(verbose=True)
 		meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
+		if reference:
+			meshes.load_new_mesh(reference)
+			meshes.set_current_mesh(0)
 		try:
 			# Memory that loading gave back is not the filter's to use unseen.
 			ctypes.CDLL(None).malloc_trim(0)
@@ -122,11 +140,11 @@ def time_meshlab_filter(filter_name, path, repeats, budget):
 		measurable = reset_peak("self")
 		before = memory_of("self", "VmRSS")
 		start = time.perf_counter()
-		meshes.apply_filter(filter_name)
+		meshes.apply_filter(filter_name, **given)
 		seconds.append(time.perf_counter() - start)
 		if len(seconds) == 1 and measurable and before:
 			memory = memory_of("self", "VmHWM") - before
-	print(json.dumps({"seconds": seconds[1:], "first": seconds[0], "memory": memory}))
+	print("\n" + json.dumps({"seconds": seconds[1:], "first": seconds[0], "memory": memory}))
 
 
 @dataclass
@@ -150,8 +168,11 @@ CONTENDERS = {
 	"plugin": Contender(
 		"orthopoly in pymeshlab", run_meshlab, "apply_coord_orthogonal_polynomial_denoising", False,
 		"taubin"),
+	"compared": Contender(
+		"orthopoly in pymeshlab, compared with a reference", run_meshlab_compared,
+		"apply_coord_orthogonal_polynomial_denoising", False, "taubin"),
 }
-METHODS = ["adaptive", "paper", "meshdenoiser", "taubin", "twostep"]
+METHODS = ["adaptive", "paper", "meshdenoiser", "taubin", "twostep", "plugin", "compared"]
 
 
 # ---------------------------------------------------------------------------------------------
@@ -264,6 +285,23 @@ def shares_table(results):
 	return tools.table(["method", "faces", "step", "share", "us a face"], rows)
 
 
+def plugin_table(results):
+	"""What the filter takes in the host beyond the denoising: reading the layer and writing it back,
+	normals, and where there is a reference, measuring against it twice and the colours."""
+	rows = []
+	for r in results:
+		if not r.get("core"):
+			continue
+		beyond = [whole - core for whole, core in zip(r["seconds"], r["core"])]
+		shares = [100 * rest / whole for rest, whole in zip(beyond, r["seconds"])]
+		rows.append([
+			label(r), size(r["faces"]), tools.number(r["median"], 3),
+			tools.number(statistics.median(r["core"]), 3),
+			tools.number(statistics.median(beyond), 3), f"{statistics.median(shares):.1f} %"])
+	return tools.table(
+		["filter", "faces", "seconds", "denoising", "beyond it", "share beyond it"], rows)
+
+
 def plot(results, target):
 	import matplotlib
 
@@ -305,7 +343,7 @@ def make_mesh(folder, faces, arguments):
 	noisy = folder / f"part_{faces}.ply"
 	tools.orthopoly(
 		"noise", clean, noisy, "--sigma", arguments.sigma, "--kind", arguments.kind, "--seed", 1)
-	clean.unlink()
+	clean.replace(folder / "clean.ply")
 	with noisy.open("rb") as file:
 		header = file.read(2000)
 	return noisy, int(re.search(rb"element face (\d+)", header).group(1))
@@ -316,8 +354,7 @@ def run_all(arguments, methods):
 	shutil.rmtree(folder, ignore_errors=True)
 	folder.mkdir(parents=True)
 	results = []
-	target = LEAST_FACES
-	while target <= arguments.max_faces:
+	for target in arguments.faces:
 		mesh, faces = make_mesh(folder, target, arguments)
 		for name in methods:
 			contender = CONTENDERS[name]
@@ -342,7 +379,6 @@ def run_all(arguments, methods):
 					+ (f"{result['median']:.3f} s" if "median" in result else result["skipped"]),
 					flush=True)
 		mesh.unlink()
-		target *= 2
 	return results
 
 
@@ -350,6 +386,9 @@ def arguments_of_the_command_line():
 	parser = argparse.ArgumentParser(
 		description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 	parser.add_argument("--max-faces", type=int, default=4096000, help="default: 4096000")
+	parser.add_argument(
+		"--faces", metavar="N,...",
+		help=f"exactly these sizes instead of {LEAST_FACES} and its doubles")
 	parser.add_argument(
 		"--methods", default=",".join(METHODS),
 		help=f"of {', '.join(CONTENDERS)}; the first is compared with; default: %(default)s")
@@ -370,13 +409,20 @@ def arguments_of_the_command_line():
 		parser.error("--repeats and --threads have to be 1 or more")
 	if arguments.max_faces < LEAST_FACES:
 		parser.error(f"--max-faces has to be {LEAST_FACES} or more")
+	if arguments.faces:
+		arguments.faces = sorted(int(word) for word in arguments.faces.split(","))
+		if arguments.faces[0] < 1:
+			parser.error("--faces have to be 1 or more")
+	else:
+		doublings = int(math.log2(arguments.max_faces / LEAST_FACES))
+		arguments.faces = [LEAST_FACES << i for i in range(doublings + 1)]
 	return arguments
 
 
 def main():
 	if sys.argv[1:2] == ["--meshlab-filter"]:
-		name, path, repeats, budget = sys.argv[2:]
-		time_meshlab_filter(name, path, int(repeats), float(budget))
+		name, path, repeats, budget, reference = sys.argv[2:]
+		time_meshlab_filter(name, path, int(repeats), float(budget), reference)
 		return
 	arguments = arguments_of_the_command_line()
 	notes, methods = [note for note in [tools.load_note()] if note], []
@@ -408,6 +454,8 @@ def main():
 		"## Growth: seconds go with this power of the number of faces\n\n" + growth_table(results),
 		"## Threads\n\n" + threads_table(results, arguments.threads),
 		"## Steps\n\n" + shares_table(results),
+		"## The filter in its host, and what it takes beyond the denoising\n\n"
+		+ plugin_table(results),
 	])
 	(tools.OUT / "speed.json").write_text(
 		json.dumps({"commit": tools.commit(), "results": results}, indent=1) + "\n", encoding="utf-8")

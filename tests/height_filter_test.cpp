@@ -53,6 +53,12 @@ Point cubic_normal(double x, double y)
 		.normalized();
 }
 
+std::vector<Point> filtered_normals(
+	const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options)
+{
+	return normals_from_heights(workspace, field, options).normals;
+}
+
 } // namespace
 
 TEST_CASE("Vertices on a plane give its normal, whatever the guides", "[height_filter]")
@@ -69,7 +75,7 @@ TEST_CASE("Vertices on a plane give its normal, whatever the guides", "[height_f
 			rotation * Point(0.1 * std::cos(turn), 0.1 * std::sin(turn), 1).normalized());
 	}
 	const double sigma = 0.01 * f.workspace.mean_edge_length;
-	const std::vector<Point> found = normals_from_heights(
+	const std::vector<Point> found = filtered_normals(
 		f.workspace, {guides, f.geometry.centroids, mesh.positions}, options_of(sigma, 1, 4));
 	for (const Point& n : found)
 		CHECK((n - rotation * Point(0, 0, 1)).norm() < 1e-11);
@@ -87,7 +93,7 @@ TEST_CASE("A cubic surface comes back exactly", "[height_filter]")
 	const StepFixture f(turned);
 	const std::vector<Point> guides(mesh.faces.size(), rotation * Point(0, 0, 1));
 	// Without noise every coefficient counts.
-	const std::vector<Point> found = normals_from_heights(
+	const std::vector<Point> found = filtered_normals(
 		f.workspace, {guides, f.geometry.centroids, turned.positions}, options_of(0, 4, 4));
 	const FaceGeometry geometry = face_geometry(mesh.positions, mesh.faces);
 	for (std::size_t i = 0; i < found.size(); ++i) {
@@ -105,7 +111,7 @@ TEST_CASE("A wider structure sees through more noise", "[height_filter]")
 	double before = mean_angle(f.geometry.normals, up);
 	for (const int ring : {1, 2, 3, 5}) {
 		const double now = mean_angle(
-			normals_from_heights(
+			filtered_normals(
 				f.workspace,
 				{guides, f.geometry.centroids, f.mesh.positions},
 				options_of(sigma, ring, ring)),
@@ -123,7 +129,7 @@ TEST_CASE("On a noisy sphere normals are radial", "[height_filter]")
 	const FaceGeometry clean = face_geometry(sphere.positions, sphere.faces);
 	const StepFixture f(noisy(sphere, 0.2));
 	const double sigma = 0.2 * mean_edge_length(sphere.positions, sphere.faces);
-	const std::vector<Point> found = normals_from_heights(
+	const std::vector<Point> found = filtered_normals(
 		f.workspace, {clean.normals, clean.centroids, f.mesh.positions}, options_of(sigma, 1, 5));
 	const auto radial = [&](std::size_t i) { return clean.centroids[i].normalized(); };
 	CHECK(mean_angle(f.geometry.normals, radial) > 15);
@@ -138,7 +144,7 @@ TEST_CASE("Structures end at an edge the guides know", "[height_filter]")
 	const double edge = exact.workspace.mean_edge_length;
 	// Heights of the vertices on the edge count on both sides and are right on both.
 	for (const Point& n : {Point(1, 0, 0), Point(0, -1, 0), Point(0, 0, 1)}) {
-		const std::vector<Point> found = normals_from_heights(
+		const std::vector<Point> found = filtered_normals(
 			exact.workspace,
 			{clean.normals, clean.centroids, box.positions},
 			options_of(0.1 * edge, 1, 5));
@@ -148,7 +154,7 @@ TEST_CASE("Structures end at an edge the guides know", "[height_filter]")
 		}
 	}
 	// What happens to vertices in the middle of the top is not felt on the sides.
-	const std::vector<Point> expected = normals_from_heights(
+	const std::vector<Point> expected = filtered_normals(
 		exact.workspace,
 		{clean.normals, clean.centroids, box.positions},
 		options_of(0.1 * edge, 1, 5));
@@ -157,7 +163,7 @@ TEST_CASE("Structures end at an edge the guides know", "[height_filter]")
 		if (p.z() > 0.49 && std::abs(p.x()) < 0.49 && std::abs(p.y()) < 0.49)
 			p.z() += 0.3 * edge * std::sin(40 * p.x()) * std::cos(50 * p.y());
 	}
-	const std::vector<Point> found = normals_from_heights(
+	const std::vector<Point> found = filtered_normals(
 		exact.workspace, {clean.normals, clean.centroids, bumpy}, options_of(0.1 * edge, 1, 5));
 	std::size_t changed = 0;
 	for (std::size_t i = 0; i < found.size(); ++i) {
@@ -170,18 +176,51 @@ TEST_CASE("Structures end at an edge the guides know", "[height_filter]")
 	CHECK(changed > 200);
 }
 
+TEST_CASE("Votes spread where structures do not know about an edge", "[height_filter]")
+{
+	const TriangleMesh box = make_box({12, 12, 12}, Point(1, 1, 1));
+	const StepFixture f(box);
+	std::vector<Point> guides = f.geometry.normals;
+	const HeightFilterOptions options = options_of(0.1 * f.workspace.mean_edge_length, 1, 5);
+	const auto worst = [&](double from, double to) {
+		const std::vector<double> spreads =
+			normals_from_heights(
+				f.workspace, {guides, f.geometry.centroids, box.positions}, options)
+				.spreads;
+		double result = 0;
+		for (std::size_t i = 0; i < spreads.size(); ++i) {
+			const double place = f.geometry.centroids[i].x();
+			if (place > from && place < to)
+				result = std::max(result, spreads[i]);
+		}
+		return result;
+	};
+	CHECK(worst(-1, 1) < 1e-12);
+	// Nearly the same for all faces near the edges at x = 0.5.
+	for (std::size_t i = 0; i < guides.size(); ++i) {
+		if (f.geometry.centroids[i].x() > 0.38)
+			guides[i] = Point(1, 0.4 * guides[i].y(), 0.4 * guides[i].z()).normalized();
+	}
+	CHECK(worst(0.38, 1) > 0.01);
+	CHECK(worst(-1, 0) < 1e-12);
+}
+
 TEST_CASE("Heights of a face without a guide or without company", "[height_filter]")
 {
 	const StepFixture f(noisy(make_flat_grid(12), 0.1));
 	std::vector<Point> guides(f.mesh.faces.size(), Point(0, 0, 1));
 	guides[100] = Point::Zero();  // left out
 	guides[180] = Point(1, 0, 0); // similar to nobody: three vertices fix no plane
-	const std::vector<Point> found = normals_from_heights(
+	const HeightNormals result = normals_from_heights(
 		f.workspace,
 		{guides, f.geometry.centroids, f.mesh.positions},
 		options_of(0.1 * f.workspace.mean_edge_length, 1, 3));
+	const std::vector<Point>& found = result.normals;
 	CHECK(same_bits(found[100], guides[100]));
 	CHECK(same_bits(found[180], guides[180]));
+	CHECK(result.spreads[100] == 1);
+	CHECK(result.spreads[180] == 1);
+	CHECK(result.spreads[101] < 0.1);
 	for (std::size_t i = 0; i < found.size(); ++i) {
 		if (i != 100 && i != 180)
 			CHECK(found[i].norm() == Approx(1));
@@ -196,7 +235,7 @@ TEST_CASE("Strict selection drops curvature that is noise", "[height_filter]")
 		HeightFilterOptions options = options_of(0.3 / 40, 4, 4);
 		options.selection = selection;
 		return mean_angle(
-			normals_from_heights(
+			filtered_normals(
 				f.workspace, {guides, f.geometry.centroids, f.mesh.positions}, options),
 			[](std::size_t) { return Point(0, 0, 1); });
 	};
@@ -210,7 +249,7 @@ TEST_CASE("Normals from heights turn and grow with the mesh", "[height_filter]")
 	const TriangleMesh mesh = noisy(clean, 0.15);
 	const StepFixture f(mesh);
 	const double sigma = 0.15 * f.workspace.mean_edge_length;
-	const std::vector<Point> expected = normals_from_heights(
+	const std::vector<Point> expected = filtered_normals(
 		f.workspace, {guide.normals, guide.centroids, mesh.positions}, options_of(sigma, 1, 5));
 	const Eigen::Matrix3d rotation = some_rotation();
 	for (const double scale : {1e-3, 1.0, 1e3}) {
@@ -219,7 +258,7 @@ TEST_CASE("Normals from heights turn and grow with the mesh", "[height_filter]")
 		TriangleMesh moved_mesh = mesh;
 		moved_mesh.positions = each(mesh.positions, there);
 		const StepFixture moved(moved_mesh);
-		const std::vector<Point> found = normals_from_heights(
+		const std::vector<Point> found = filtered_normals(
 			moved.workspace,
 			{each(guide.normals, turn), each(guide.centroids, there), moved_mesh.positions},
 			options_of(scale * sigma, 1, 5));
@@ -239,7 +278,7 @@ TEST_CASE("Normals from heights are the same on any number of threads", "[height
 	const TriangleMesh mesh = noisy(make_part(8000), 0.15);
 	const StepFixture one(mesh, 1);
 	const auto found = [&](const StepFixture& f) {
-		return normals_from_heights(
+		return filtered_normals(
 			f.workspace,
 			{f.geometry.normals, f.geometry.centroids, mesh.positions},
 			options_of(0.15 * f.workspace.mean_edge_length, 1, 5));
@@ -262,7 +301,7 @@ TEST_CASE("Wide lanes give the same bits for heights", "[height_filter]")
 		HeightFilterOptions options = options_of(0.15 * f.workspace.mean_edge_length, 1, rings);
 		const auto found = [&](bool wide) {
 			options.wide_lanes = wide;
-			return normals_from_heights(
+			return filtered_normals(
 				f.workspace, {clean.normals, f.geometry.centroids, f.mesh.positions}, options);
 		};
 		CHECK(same_bits(found(true), found(false)));
@@ -280,6 +319,6 @@ TEST_CASE("The height filter can be stopped", "[height_filter]")
 	progress.report(1, "stop");
 	const FaceGeometry geometry = face_geometry(mesh.positions, mesh.faces);
 	CHECK_THROWS_AS(
-		normals_from_heights(workspace, {geometry.normals, geometry.centroids, mesh.positions}, {}),
+		filtered_normals(workspace, {geometry.normals, geometry.centroids, mesh.positions}, {}),
 		Cancelled);
 }

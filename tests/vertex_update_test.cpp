@@ -121,6 +121,24 @@ TEST_CASE("Accelerated steps do as much as twice as many plain ones", "[vertex_u
 	}
 }
 
+TEST_CASE("A vertex takes its own share of a step", "[vertex_update]")
+{
+	const StepFixture f(noisy(make_flat_grid(20), 0.2));
+	const std::vector<Point> normals(f.mesh.faces.size(), Point(0, 0, 1));
+	VertexUpdateOptions options;
+	options.iterations = 1;
+	const std::vector<Point> whole = updated(f, normals, options);
+	std::vector<double> paces(f.mesh.positions.size(), 1);
+	for (std::size_t i = 0; i < paces.size(); i += 2)
+		paces[i] = 0.25;
+	options.paces = &paces;
+	const std::vector<Point> found = updated(f, normals, options);
+	for (std::size_t i = 0; i < paces.size(); ++i) {
+		const Point& from = f.mesh.positions[i];
+		CHECK((found[i] - from - paces[i] * (whole[i] - from)).norm() < 1e-15);
+	}
+}
+
 TEST_CASE("A vertex is pulled to its rest only where its normals leave it free", "[vertex_update]")
 {
 	const StepFixture f(noisy(make_flat_grid(20), 0.2));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "adaptive_method.h"
 
-#include "ambiguity.h"
 #include "height_filter.h"
 #include "noise_correlation.h"
 #include "noise_level.h"
@@ -62,14 +61,25 @@ constexpr double NO_OUTLIERS = 0.9;
 constexpr double OUTLIERS_FROM = 0.7;
 constexpr double OUTLIERS_FULL = 0.5;
 
+// Iterations, the last of which makes the result, and those before better guides for it. Up to the
+// first noise guides need no improving, and filtering twice would only cost detail; from there to
+// the second the first of two iterations moves vertices a growing part of its way.
 constexpr int ITERATIONS = 2;
-// Accelerated ones: as good as twice to three times as many plain ones.
-constexpr int VERTEX_ITERATIONS = 10;
+constexpr double GUIDING_FROM = 0.12;
+constexpr double GUIDING_FULL = 0.18;
 
-// Share of them that iterations before the last one take, from one noise to the other: vertices
-// that follow normals which are still rough all the way slide the further the rougher these are.
-constexpr double FULL_STEPS_NOISE = 0.1;
-constexpr double HALF_STEPS_NOISE = 0.2;
+// Steps of the vertex update in the last iteration (accelerated ones: as good as three to five
+// times as many plain ones), and what part of them guides need: triangles turn long before waves
+// over many of them settle.
+constexpr int VERTEX_ITERATIONS = 20;
+constexpr double GUIDING_SHARE = 0.25;
+
+// Spread of the votes for a normal (1 less a cosine, over the noise, which makes some of it: two
+// degrees at 0.1) at which a vertex goes at half its pace, and what its pace is divided by at most.
+// Where votes agree, flat or evenly curved, normals know the surface better than the measured
+// vertices do, over any distance; where they do not, long waves are better left as measured.
+constexpr double SLOW_SPREAD = 0.005;
+constexpr double SLOWEST = 20;
 
 // Increment of the threshold of similar directions, from one noise to the other: the more noise the
 // first iteration took out of the guides, the stricter the next can be.
@@ -97,18 +107,13 @@ constexpr int FACES_PER_LAST_STRUCTURE = 2;
 constexpr int FACES_PER_EARLY_STRUCTURE = 3;
 constexpr int FACES_PER_HEIGHT_STRUCTURE = 4;
 
-// Ambiguity (0 to 1) beyond which normals decide alone, at the relative noise below: heights know
-// edges only through the guides, and these know them less where the noise is larger than the
-// triangles.
-constexpr double AMBIGUITY_LIMIT = 0.4;
-constexpr double AMBIGUITY_NOISE = 0.2;
-
-// Angle (17 degrees) between the normal by heights and that by normals from which heights are not
-// trusted: a structure of a few long triangles, or of several sheets, is no polynomial.
-constexpr double DISAGREEMENT = 0.3;
-
-// Mean edge length over the root of the mean area, for equilateral triangles.
-constexpr double EDGE_PER_ROOT_AREA = 1.52;
+// Spread of the votes by heights (1 less a cosine: four and a half degrees) and angle between the
+// normals by heights and by normals (six degrees) at which either counts half. Heights know edges
+// only through the guides: a structure that has faces from beyond an edge, or is of several sheets,
+// votes otherwise than those around it. Where all agree they are right, and be they ever so far
+// from the normals.
+constexpr double SPREAD = 0.0033;
+constexpr double DISAGREEMENT = 0.1;
 
 // Noise correlated over several edges: smoothing that reaches beyond the correlation, wide
 // structures of one size, and a selection that allows for each independent value being shared by
@@ -166,12 +171,16 @@ Rings rings_for(double noise)
 	return noise < 0.35 ? Rings {3, 4} : Rings {3, 5};
 }
 
+// How much of its way the first of two iterations goes.
+double guiding_for(double noise)
+{
+	return way_between(GUIDING_FROM, GUIDING_FULL, noise);
+}
+
 // Rings of the height structures: more than those of the normals, since heights are steadier the
 // wider they reach, and wider the more noise hides the detail there is.
 int height_rings_for(double noise)
 {
-	if (noise < 0.11)
-		return 5;
 	return noise < 0.16 ? 6 : 7;
 }
 
@@ -183,9 +192,11 @@ struct Plan {
 	double noise = 0;
 	double prefilter_pairs = 0;
 	int iterations = ITERATIONS;
+	/// How much of their way the iterations before the last go, 0 to 1.
+	double guiding = 1;
+	/// Of the last iteration, and of those before.
 	int vertex_iterations = VERTEX_ITERATIONS;
-	/// Those of the iterations before the last.
-	int early_vertex_iterations = VERTEX_ITERATIONS;
+	int guiding_vertex_iterations = VERTEX_ITERATIONS;
 	double cos_threshold = 0;
 	double cos_threshold_increment = LEAST_INCREMENT;
 	double selection = SELECTION;
@@ -239,11 +250,16 @@ Plan plan_for(const DenoiseOptions& options, double noise, double correlation)
 		plan.rings.largest = *options.structure_ring;
 		plan.rings.smallest = std::min(plan.rings.smallest, plan.rings.largest);
 	}
-	plan.iterations = options.iterations.value_or(plan.iterations);
+	if (options.iterations) {
+		plan.iterations = *options.iterations;
+	}
+	else {
+		plan.guiding = between(guiding_for(noise), 1.0, correlation);
+		plan.iterations = plan.guiding > 0 ? ITERATIONS : 1;
+	}
 	plan.vertex_iterations = options.vertex_iterations.value_or(plan.vertex_iterations);
-	const double share = 1 - 0.5 * way_between(FULL_STEPS_NOISE, HALF_STEPS_NOISE, noise);
-	plan.early_vertex_iterations =
-		static_cast<int>(std::lround(between(share, 1.0, correlation) * plan.vertex_iterations));
+	plan.guiding_vertex_iterations = static_cast<int>(
+		std::ceil(between(GUIDING_SHARE, 1.0, correlation) * plan.vertex_iterations));
 	plan.cos_threshold = options.cos_threshold.value_or(plan.cos_threshold);
 	plan.cos_threshold_increment =
 		options.cos_threshold_increment.value_or(plan.cos_threshold_increment);
@@ -294,25 +310,30 @@ public:
 		const std::vector<Point> start = positions_;
 		const FaceGeometry original = face_geometry(workspace_, positions_);
 		for (int iteration = 0; iteration < plan_.iterations; ++iteration) {
+			const bool last = iteration + 1 == plan_.iterations;
 			const FaceGeometry current = face_geometry(workspace_, positions_);
 			std::vector<Point> normals = filter(original, current, iteration);
-			if (iteration + 1 == plan_.iterations && plan_.correlation < 1)
-				refine(current, normals);
+			std::vector<double> paces;
+			if (last && plan_.correlation < 1)
+				paces = refine(current, normals);
 			begin_phase(iteration, 0.8, 1.0, "moving vertices");
 			VertexUpdateOptions update;
-			update.iterations = iteration + 1 < plan_.iterations ? plan_.early_vertex_iterations :
-																   plan_.vertex_iterations;
+			update.iterations = last ? plan_.vertex_iterations : plan_.guiding_vertex_iterations;
 			update.area_weights = true;
 			update.unfold_cosine = FOLD_COSINE;
 			if (plan_.correlation < 1) {
 				update.accelerated = true;
 				update.rest = &start;
 			}
+			if (!paces.empty())
+				update.paces = &paces;
 			update_vertices(workspace_, normals, update, positions_);
 			// Eq. 12 lets vertices slide where normals do not agree; noise does not reach so far.
 			bound_drift(start, DRIFT_BOUND * sigma_);
 			if (unfold_faces(workspace_, normals, positions_))
 				bound_drift(start, DRIFT_BOUND * sigma_);
+			if (!last && plan_.guiding < 1)
+				go_back(start, 1 - plan_.guiding);
 		}
 	}
 
@@ -347,6 +368,14 @@ private:
 		});
 	}
 
+	// Takes vertices a share of the way back to where they came from.
+	void go_back(const std::vector<Point>& start, double share)
+	{
+		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
+			positions_[i] += share * (start[i] - positions_[i]);
+		});
+	}
+
 	void prefilter()
 	{
 		const std::vector<Point>& measured = workspace_.mesh.positions;
@@ -368,8 +397,9 @@ private:
 	{
 		begin_phase(iteration, 0.0, 0.5, "fitting normals");
 		NormalFilterOptions options;
+		const double guided = iteration * plan_.guiding;
 		options.cos_threshold =
-			std::min(1.0, plan_.cos_threshold + iteration * plan_.cos_threshold_increment);
+			std::min(1.0, plan_.cos_threshold + guided * plan_.cos_threshold_increment);
 		options.smallest_ring = plan_.rings.smallest;
 		options.largest_ring = plan_.rings.largest;
 		options.selection = plan_.selection;
@@ -381,9 +411,9 @@ private:
 			workspace_, normal_field(original, current, workspace_.execution), options);
 	}
 
-	// Takes the normals from the measured heights instead, as far as it is clear which faces go
-	// together.
-	void refine(const FaceGeometry& current, std::vector<Point>& normals) const
+	// Takes the normals from the measured heights instead, as far as these agree. Returns the paces
+	// of the vertices: #V.
+	std::vector<double> refine(const FaceGeometry& current, std::vector<Point>& normals) const
 	{
 		begin_phase(plan_.iterations - 1, 0.5, 0.8, "fitting heights");
 		HeightFilterOptions options;
@@ -394,25 +424,46 @@ private:
 		options.largest_ring = plan_.height_rings;
 		options.sigma = sigma_;
 		options.selection = HEIGHT_SELECTION;
-		const std::vector<Point> refined = normals_from_heights(
+		const HeightNormals refined = normals_from_heights(
 			workspace_, {normals, current.centroids, workspace_.mesh.positions}, options);
-		const std::vector<LocalAmbiguity> ambiguities =
-			measure_ambiguity(workspace_, normals, current.areas);
 		workspace_.execution.for_each(workspace_.mesh.face_count(), [&](std::size_t i) {
-			const LocalAmbiguity& local = ambiguities[i];
-			// Noise in local edge lengths over that at which the limit holds.
-			const double edge = EDGE_PER_ROOT_AREA * std::sqrt(local.mean_area);
-			const double doubt =
-				local.ambiguity * sigma_ / (AMBIGUITY_LIMIT * AMBIGUITY_NOISE * edge);
-			const double square = 2 - 2 * normals[i].dot(refined[i]);
-			const double disagreement = square / (DISAGREEMENT * DISAGREEMENT);
-			const double share =
-				std::max(plan_.correlation, std::min(1.0, std::max(doubt, disagreement)));
-			const Point blend = share * normals[i] + (1 - share) * refined[i];
+			const double spread = refined.spreads[i] / SPREAD;
+			const double apart = (normals[i] - refined.normals[i]).norm() / DISAGREEMENT;
+			const double doubt = spread * spread * apart;
+			const double share = std::max(plan_.correlation, doubt / (1 + doubt));
+			const Point blend = share * normals[i] + (1 - share) * refined.normals[i];
 			const double length = blend.norm();
 			if (length > 0)
 				normals[i] = blend / length;
+			// Nobody is similar enough: where it points is the noise's doing, so that its vertices
+			// had better go by the other faces.
+			if (refined.spreads[i] >= 1 && plan_.correlation < 0.5)
+				normals[i] = Point::Zero();
 		});
+		return paces_for(refined.spreads);
+	}
+
+	// The paces of the vertices, by the mean spread of the votes for the faces around each.
+	std::vector<double> paces_for(const std::vector<double>& spreads) const
+	{
+		const IndexLists& around = workspace_.vertex_faces;
+		const double scale = (1 - plan_.correlation) / (SLOW_SPREAD * plan_.noise);
+		std::vector<double> paces(positions_.size(), 1);
+		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
+			const auto vertex = static_cast<Index>(i);
+			double sum = 0;
+			int count = 0;
+			for (const Index* it = around.begin(vertex); it != around.end(vertex); ++it) {
+				const double spread = spreads[static_cast<std::size_t>(*it)];
+				if (spread < 1) {
+					sum += spread;
+					++count;
+				}
+			}
+			if (count > 0)
+				paces[i] = 1 / (1 + std::min(SLOWEST, scale * sum / count));
+		});
+		return paces;
 	}
 
 	const Workspace& workspace_;

@@ -28,7 +28,7 @@ constexpr std::size_t PLANE_TERMS = 3;
 
 // Weight of the residual variance beyond the noise, over the mean square radius, in the variance of
 // a slope: a height left unexplained may well be a slope at the centre, hence more than one.
-constexpr double BIAS_SHARE = 8;
+constexpr double BIAS_SHARE = 12;
 
 // What the noise may be above its estimate before the residual counts as unexplained.
 constexpr double MARGIN = 1.25;
@@ -81,6 +81,9 @@ Lanes dot(const std::array<Lanes, 3>& vectors, const Point& direction)
 	return vectors[0] * Lanes(direction[0]) + vectors[1] * Lanes(direction[1]) +
 		   vectors[2] * Lanes(direction[2]);
 }
+
+/// A normal times its weight, and that weight.
+using Vote = Eigen::Vector4d;
 
 /// The polynomial that a structure votes with.
 struct Polynomial {
@@ -140,7 +143,7 @@ public:
 		stamps_.assign(positions_.size(), -1);
 	}
 
-	void vote(Index i, std::vector<Point>& sums)
+	void vote(Index i, std::vector<Vote>& sums)
 	{
 		if (guides_[at(i)].isZero(0) || chosen_[at(patch_.mesh_faces()[at(i)])] == 0)
 			return;
@@ -370,7 +373,7 @@ private:
 		return std::max(0.0, residual_variance - slack * variance_) / mean_square_radius;
 	}
 
-	void add_votes(Index i, const Polynomial& polynomial, std::vector<Point>& sums)
+	void add_votes(Index i, const Polynomial& polynomial, std::vector<Vote>& sums)
 	{
 		const Point center = places_[at(i)];
 		const Point guide = guides_[at(i)];
@@ -410,7 +413,8 @@ private:
 				vote[component] = factor * (axes[0][component] - slope_x * axes[1][component] -
 											slope_y * axes[2][component]);
 			for (std::size_t lane = 0; lane < LANES; ++lane)
-				sums[at(members_[k + lane])] += Point(vote[0][lane], vote[1][lane], vote[2][lane]);
+				sums[at(members_[k + lane])] +=
+					Vote(vote[0][lane], vote[1][lane], vote[2][lane], polynomial.weight);
 		}
 	}
 
@@ -448,7 +452,7 @@ class WideVoter : public Voter<WideLanes> {
 public:
 	using Voter<WideLanes>::Voter;
 
-	ORTHOPOLY_WIDE void vote(Index i, std::vector<Point>& sums) { Voter<WideLanes>::vote(i, sums); }
+	ORTHOPOLY_WIDE void vote(Index i, std::vector<Vote>& sums) { Voter<WideLanes>::vote(i, sums); }
 };
 
 // Sizes of the faces by which some of them are chosen.
@@ -462,7 +466,7 @@ std::vector<double> perimeters(const Workspace& workspace, const std::vector<Poi
 }
 
 template<class AnyVoter>
-std::vector<Point>
+std::vector<Vote>
 let_vote(const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options)
 {
 	const std::vector<std::uint8_t> chosen = choose_evenly(
@@ -471,20 +475,27 @@ let_vote(const Workspace& workspace, const HeightField& field, const HeightFilte
 	std::deque<AnyVoter> voters;
 	for (int worker = 0; worker < workspace.execution.threads(); ++worker)
 		voters.emplace_back(workspace, field, options, chosen);
-	return sum_votes(workspace, voters);
+	return sum_votes<Vote>(workspace, voters);
 }
 
 } // namespace
 
-std::vector<Point> normals_from_heights(
+HeightNormals normals_from_heights(
 	const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options)
 {
-	std::vector<Point> result = options.wide_lanes ?
-									let_vote<WideVoter>(workspace, field, options) :
-									let_vote<Voter<Lanes>>(workspace, field, options);
+	const std::vector<Vote> sums = options.wide_lanes ?
+									   let_vote<WideVoter>(workspace, field, options) :
+									   let_vote<Voter<Lanes>>(workspace, field, options);
+	HeightNormals result;
+	result.normals = field.guides;
+	result.spreads.resize(sums.size(), 1);
 	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
-		const double length = result[i].norm();
-		result[i] = length > 0 ? Point(result[i] / length) : field.guides[i];
+		const Vote& sum = sums[i];
+		const double length = sum.head<3>().norm();
+		if (length > 0) {
+			result.normals[i] = sum.head<3>() / length;
+			result.spreads[i] = std::max(0.0, 1 - length / sum[3]);
+		}
 	});
 	return result;
 }

@@ -37,6 +37,15 @@ struct HeightFilterOptions {
 	double selection = 9;
 };
 
+/// What `normals_from_heights` finds: one entry a face (#F each).
+struct HeightNormals {
+	/// Unit normals.
+	std::vector<Point> normals;
+	/// How far the votes for a face differ: one less the length of their weighted mean, about half
+	/// the variance of their directions in radians squared. 1 for a face without votes.
+	std::vector<double> spreads;
+};
+
 /// Estimates face normals from the measured vertices themselves: discrete orthogonal polynomials of
 /// degree three for the height above the guide's tangent plane, over the vertices of the similar
 /// faces.
@@ -46,9 +55,9 @@ struct HeightFilterOptions {
 /// normals. But it knows edges only through the guides. Structure size, selection and votes as in
 /// `filter_normals`.
 ///
-/// @returns #F unit normals; a face without votes keeps its guide. The same bits on any number of
-/// threads. O(#F R^2). Throws Cancelled.
-std::vector<Point> normals_from_heights(
+/// @returns a face without votes keeps its guide. The same bits on any number of threads.
+/// O(#F R^2). Throws Cancelled.
+HeightNormals normals_from_heights(
 	const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options);
 
 } // namespace orthopoly

@@ -469,7 +469,7 @@ let_vote(const Workspace& workspace, const NormalField& field, const NormalFilte
 	voters.reserve(structures.size());
 	for (AnyStructures& own : structures)
 		voters.emplace_back(own, options, floors, chosen);
-	return sum_votes(workspace, voters);
+	return sum_votes<Point>(workspace, voters);
 }
 
 } // namespace

@@ -171,6 +171,8 @@ void update_vertices(
 						const double unfit = std::min(1.0, turned / (total * UNFIT));
 						move += PULL * unfit * (to_rest - taken / total);
 					}
+					if (options.paces != nullptr)
+						move *= (*options.paces)[at(i)];
 					if (options.accelerated) {
 						Point& last = moves[at(i)];
 						last = chebyshev.repeat * last + chebyshev.descent * move;

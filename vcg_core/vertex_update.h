@@ -26,6 +26,10 @@ struct VertexUpdateOptions {
 	/// away from their targets. Where normals do not agree eq. 12 would let vertices slide. Null in
 	/// the paper's method.
 	const std::vector<Point>* rest = nullptr;
+	/// Share of each step that a vertex takes (#V, above 0 to 1), or null for all of it. The steps
+	/// bring short waves of the surface in line with the normals first and long ones last, so a
+	/// vertex that goes slowly keeps long waves as they were. Null in the paper's method.
+	const std::vector<double>* paces = nullptr;
 };
 
 /// Moves vertices towards the planes through the face centroids with the given normals (eq. 12).

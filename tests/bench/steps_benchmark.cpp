@@ -135,7 +135,7 @@ void height_filter(benchmark::State& state)
 		benchmark::DoNotOptimize(
 			normals_from_heights(
 				*f.workspace, {f.geometry.normals, f.geometry.centroids, f.mesh.positions}, options)
-				.data());
+				.normals.data());
 	});
 }
 

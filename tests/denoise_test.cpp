@@ -170,7 +170,9 @@ TEST_CASE("the result says what was done", "[denoise]")
 TEST_CASE("the resolved options give the same result again", "[denoise]")
 {
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
-	const TriangleMesh noisy = with_noise(make_part(2000), 0.2);
+	// The first iteration of the adaptive method counts for nothing, for a part, and in full.
+	const auto sigma = GENERATE(0.1, 0.15, 0.2);
+	const TriangleMesh noisy = with_noise(make_part(4000), sigma);
 	const DenoiseResult first = run(noisy, options_of(method));
 	const DenoiseResult second = run(noisy, first.resolved);
 	CHECK(same_bits(first.positions, second.positions));

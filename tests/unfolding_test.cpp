@@ -204,7 +204,7 @@ TEST_CASE("Faces are turned back the same on any number of threads", "[unfolding
 
 TEST_CASE("The method leaves no more folds than a few on strong noise", "[unfolding][slow]")
 {
-	// Without the steps that unfold, 22 on the open mesh and 11 on the part.
+	// Without the steps that unfold, 83 on the open mesh and 46 on the part, 15 without the last.
 	const auto count = [](const std::string& name, double sigma, NoiseDirection direction) {
 		const TriangleMesh truth = find_recipe(name).make_default();
 		Index folded = 0;
@@ -219,6 +219,6 @@ TEST_CASE("The method leaves no more folds than a few on strong noise", "[unfold
 		}
 		return folded;
 	};
-	CHECK(count("height_field", 0.4, NoiseDirection::Random) <= 11);
-	CHECK(count("part", 0.2, NoiseDirection::Isotropic) <= 7);
+	CHECK(count("height_field", 0.4, NoiseDirection::Random) <= 4);
+	CHECK(count("part", 0.2, NoiseDirection::Isotropic) <= 11);
 }

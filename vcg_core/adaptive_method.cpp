@@ -250,12 +250,12 @@ Plan plan_for(const DenoiseOptions& options, double noise, double correlation)
 		plan.rings.largest = *options.structure_ring;
 		plan.rings.smallest = std::min(plan.rings.smallest, plan.rings.largest);
 	}
-	if (options.iterations) {
+	plan.guiding = between(guiding_for(noise), 1.0, correlation);
+	plan.iterations = plan.guiding > 0 ? ITERATIONS : 1;
+	// Another number than by itself: all of it, then.
+	if (options.iterations && *options.iterations != plan.iterations) {
 		plan.iterations = *options.iterations;
-	}
-	else {
-		plan.guiding = between(guiding_for(noise), 1.0, correlation);
-		plan.iterations = plan.guiding > 0 ? ITERATIONS : 1;
+		plan.guiding = 1;
 	}
 	plan.vertex_iterations = options.vertex_iterations.value_or(plan.vertex_iterations);
 	plan.guiding_vertex_iterations = static_cast<int>(

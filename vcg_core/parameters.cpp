@@ -227,8 +227,8 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"iterations",
 					"Iterations (-1: automatic)",
 					"Rounds of normal filtering and vertex update, 1 to 50. -1 lets the method choose "
-					"(the paper: 5). More makes flat regions flatter and edges sharper, and costs "
-					"fine detail and time."))),
+					"(the paper: 5; the adaptive method: 1 or 2). More makes flat regions flatter and "
+					"edges sharper, and costs fine detail and time."))),
 		bind(
 			&Options::keep_boundary,
 			boolean(
@@ -247,8 +247,8 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"Vertex update steps (-1: automatic)",
 					"Steps that move the vertices towards the filtered normals in each iteration, 1 to "
 					"500 (the paper: 10). More follows the normals more closely; fewer leaves the "
-					"vertices closer to where they were. The adaptive method leaves out up to half of "
-					"them before the last iteration, the more the stronger the noise.")))),
+					"vertices closer to where they were. The adaptive method takes a quarter of them "
+					"before the last iteration.")))),
 		bind(
 			&Options::structure_ring,
 			advanced(within(

@@ -100,11 +100,9 @@ constexpr double ORIGINAL_SHARE = 0.7;
 
 // Noise from which structures are wide: height structures of one ring hold too few vertices to be
 // worth fitting, and all have so many members in common that some of the faces having their own is
-// enough. Fewer where the result is filtered again, fewest for heights, whose structures are
-// widest.
+// enough; fewer for heights, whose structures are widest.
 constexpr double WIDE_STRUCTURES_NOISE = 0.15;
-constexpr int FACES_PER_LAST_STRUCTURE = 2;
-constexpr int FACES_PER_EARLY_STRUCTURE = 3;
+constexpr int FACES_PER_WIDE_STRUCTURE = 3;
 constexpr int FACES_PER_HEIGHT_STRUCTURE = 4;
 
 // Spread of the votes by heights (1 less a cosine: four and a half degrees) and angle between the
@@ -404,9 +402,7 @@ private:
 		options.largest_ring = plan_.rings.largest;
 		options.selection = plan_.selection;
 		if (plan_.noise >= WIDE_STRUCTURES_NOISE)
-			options.faces_per_structure = iteration + 1 < plan_.iterations ?
-											  FACES_PER_EARLY_STRUCTURE :
-											  FACES_PER_LAST_STRUCTURE;
+			options.faces_per_structure = FACES_PER_WIDE_STRUCTURE;
 		return filter_normals(
 			workspace_, normal_field(original, current, workspace_.execution), options);
 	}

@@ -44,42 +44,35 @@ Point way_into_outline(
 	return found == 2 ? Point(sum / 2) : Point(Point::Zero());
 }
 
-// One umbrella step: the mean of the neighbours, each weighed by the faces shared.
-void umbrella_step(
+// Where an umbrella step takes a vertex: to the mean of the neighbours, each weighed by the faces
+// shared.
+Point umbrella(
 	const Workspace& workspace,
 	double step,
-	const std::vector<std::uint8_t>& only,
+	bool turned_over,
 	const std::vector<Point>& positions,
-	std::vector<Point>& moved)
+	Index vertex)
 {
-	workspace.execution.parallel_for(
-		workspace.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
-			for (Index i = begin; i < end; ++i) {
-				moved[at(i)] = positions[at(i)];
-				const Index count = workspace.vertex_faces.size(i);
-				if (count == 0 || workspace.mesh.is_fixed(i) || (!only.empty() && only[at(i)] == 0))
-					continue;
-				Point sum = Point::Zero();
-				Point normal = Point::Zero();
-				for (const Index* it = workspace.vertex_faces.begin(i);
-					 it != workspace.vertex_faces.end(i);
-					 ++it) {
-					const Face& face = workspace.mesh.faces[at(*it)];
-					for (const Index corner : face)
-						sum += positions[at(corner)] - positions[at(i)];
-					if (workspace.edges.boundary[at(i)] != 0)
-						normal += face_cross_product(positions, face);
-				}
-				// Neighbours on one side only would pull the outline inwards.
-				if (workspace.edges.boundary[at(i)] != 0)
-					sum = normal.isZero(0) ? normal :
-											 Point(normal.dot(sum) / normal.squaredNorm() * normal);
-				moved[at(i)] += step / (2.0 * static_cast<double>(count)) * sum;
-				if (workspace.edges.boundary[at(i)] != 0 && !only.empty() &&
-					only[at(i)] == TURNED_OVER)
-					moved[at(i)] += step * way_into_outline(workspace, positions, i);
-			}
-		});
+	const Point& here = positions[at(vertex)];
+	const Index count = workspace.vertex_faces.size(vertex);
+	if (count == 0 || workspace.mesh.is_fixed(vertex))
+		return here;
+	const bool on_boundary = workspace.edges.boundary[at(vertex)] != 0;
+	Point sum = Point::Zero();
+	const Index* const end = workspace.vertex_faces.end(vertex);
+	for (const Index* it = workspace.vertex_faces.begin(vertex); it != end; ++it) {
+		for (const Index corner : workspace.mesh.faces[at(*it)])
+			sum += positions[at(corner)] - here;
+	}
+	// Neighbours on one side only would pull the outline inwards.
+	if (on_boundary) {
+		const Point normal = cross_product_around(workspace, positions, vertex);
+		sum = normal.isZero(0) ? normal : Point(normal.dot(sum) / normal.squaredNorm() * normal);
+	}
+	Point moved = here + step / (2.0 * static_cast<double>(count)) * sum;
+	if (on_boundary && turned_over)
+		moved += step * way_into_outline(workspace, positions, vertex);
+	return moved;
 }
 
 } // namespace
@@ -90,11 +83,25 @@ void taubin_smooth(
 	std::vector<Point>& positions,
 	const std::vector<std::uint8_t>& only)
 {
-	std::vector<Point> shrunken(pairs > 0 ? positions.size() : 0);
+	std::vector<Index> vertices;
+	for (Index i = 0; i < workspace.mesh.vertex_count(); ++i) {
+		if (only.empty() || only[at(i)] != 0)
+			vertices.push_back(i);
+	}
+	std::vector<Point> moved(vertices.size());
+	const auto count = static_cast<Index>(vertices.size());
+	const auto step = [&](double length) {
+		workspace.execution.for_each(count, [&](std::size_t k) {
+			const bool turned_over = !only.empty() && only[at(vertices[k])] == TURNED_OVER;
+			moved[k] = umbrella(workspace, length, turned_over, positions, vertices[k]);
+		});
+		workspace.execution.for_each(
+			count, [&](std::size_t k) { positions[at(vertices[k])] = moved[k]; });
+	};
 	for (double left = pairs; left > 0; left -= 1) {
 		const double share = std::min(1.0, left);
-		umbrella_step(workspace, share * SHRINK, only, positions, shrunken);
-		umbrella_step(workspace, share * INFLATE, only, shrunken, positions);
+		step(share * SHRINK);
+		step(share * INFLATE);
 	}
 }
 

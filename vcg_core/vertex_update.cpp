@@ -24,6 +24,10 @@ constexpr double PULL = 0.1;
 // pull. Where normals fit a surface the angles fall to a fraction of this in the first steps.
 constexpr double UNFIT = 0.03;
 
+// Vertices ahead whose faces are fetched from memory meanwhile: which ones these are, the processor
+// cannot guess.
+constexpr Index FETCHED_AHEAD = 8;
+
 // Factor by which the accelerated steps together reduce all of the spectrum above their cutoff.
 constexpr double REDUCTION = 1e-3;
 
@@ -73,10 +77,13 @@ struct alignas(64) FaceState {
 	/// Target; zero where there is none.
 	Point normal;
 	Point centroid;
+	/// Zero, too, where there is no target.
 	double weight;
 	/// Squared angle between face and target (to second order; at most 4).
 	float turned;
-	/// Turned away from the target.
+	/// Whether there is a target.
+	bool aimed;
+	/// Turned away from it.
 	bool folded;
 };
 
@@ -98,11 +105,30 @@ void measure(
 		return;
 	const Point cross = face_cross_product(positions, face);
 	const double length = cross.norm();
-	if (options.area_weights)
+	if (options.area_weights && state.aimed)
 		state.weight = 0.5 * length;
 	const double along = cross.dot(state.normal);
-	state.folded = along < options.unfold_cosine * length;
+	state.folded =
+		state.aimed && options.unfold_cosine > -1 && along < options.unfold_cosine * length;
 	state.turned = length > 0 ? static_cast<float>(2 - 2 * along / length) : 0;
+}
+
+// How far a vertex at a fold goes along the surface, to the middle of the faces around it.
+Point way_aside(
+	const Workspace& workspace, const std::vector<FaceState>& states, Index vertex, const Point& x)
+{
+	Point normal = Point::Zero();
+	Point across = Point::Zero();
+	const Index* const end = workspace.vertex_faces.end(vertex);
+	for (const Index* it = workspace.vertex_faces.begin(vertex); it != end; ++it) {
+		const FaceState& face = states[at(*it)];
+		normal += face.weight * face.normal;
+		across += face.centroid - x;
+	}
+	if (normal.isZero(0) || workspace.edges.boundary[at(vertex)] != 0)
+		return Point::Zero();
+	across /= static_cast<double>(workspace.vertex_faces.size(vertex));
+	return UNFOLDING_STEP * (across - across.dot(normal) / normal.squaredNorm() * normal);
 }
 
 } // namespace
@@ -115,11 +141,11 @@ void update_vertices(
 {
 	const TriangleMesh& mesh = workspace.mesh;
 	Execution& execution = workspace.execution;
-	const bool unfold = options.unfold_cosine > -1;
 	const bool pulled = options.rest != nullptr;
 	std::vector<FaceState> states(mesh.faces.size());
 	execution.for_each(mesh.face_count(), [&](std::size_t i) {
-		states[i] = {normals[i], Point::Zero(), 1, 0, false};
+		const bool aimed = !normals[i].isZero(0);
+		states[i] = {normals[i], Point::Zero(), aimed ? 1.0 : 0.0, 0, aimed, false};
 	});
 
 	ChebyshevSteps chebyshev(std::max(1, options.iterations));
@@ -134,14 +160,20 @@ void update_vertices(
 		// A vertex reads centroids and its own position only, so moving in place is safe.
 		execution.parallel_for(mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int) {
 			for (Index i = begin; i < end; ++i) {
+#if defined(__GNUC__)
+				// Not in a function of its own, which would be taken for one that does nothing.
+				const Index ahead = std::min(i + FETCHED_AHEAD, end - 1);
+				for (const Index* it = workspace.vertex_faces.begin(ahead);
+					 it != workspace.vertex_faces.end(ahead);
+					 ++it)
+					__builtin_prefetch(&states[at(*it)]);
+#endif
 				if (mesh.is_fixed(i))
 					continue;
 				Point& x = positions[at(i)];
 				const Point to_rest = pulled ? Point((*options.rest)[at(i)] - x) : Point::Zero();
 				Point sum = Point::Zero();
 				Point taken = Point::Zero();
-				Point normal = Point::Zero();
-				Point across = Point::Zero();
 				double total = 0;
 				double turned = 0;
 				bool folded = false;
@@ -150,21 +182,16 @@ void update_vertices(
 					 ++it) {
 					const FaceState& face = states[at(*it)];
 					const Point& n = face.normal;
-					if (n.isZero(0))
-						continue;
-					const Point offset = face.centroid - x;
-					sum += (face.weight * n.dot(offset)) * n; // eq. 12
+					sum += (face.weight * n.dot(face.centroid - x)) * n; // eq. 12
 					total += face.weight;
 					if (pulled) {
 						taken += (face.weight * n.dot(to_rest)) * n;
 						turned += face.weight * static_cast<double>(face.turned);
 					}
-					if (unfold) {
-						normal += face.weight * n;
-						across += offset;
-						folded = folded || face.folded;
-					}
+					folded |= face.folded;
 				}
+				const Point aside =
+					folded ? way_aside(workspace, states, i, x) : Point(Point::Zero());
 				if (total > 0) {
 					Point move = sum / total;
 					if (pulled) {
@@ -180,11 +207,8 @@ void update_vertices(
 					}
 					x += move;
 				}
-				if (folded && !normal.isZero(0) && workspace.edges.boundary[at(i)] == 0) {
-					across /= static_cast<double>(workspace.vertex_faces.size(i));
-					x += UNFOLDING_STEP *
-						 (across - across.dot(normal) / normal.squaredNorm() * normal);
-				}
+				if (folded)
+					x += aside;
 			}
 		});
 	}

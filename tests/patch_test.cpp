@@ -90,31 +90,31 @@ void check_vertices(const Workspace& workspace, int rings)
 	}
 }
 
+template<class Check>
+void on_small_meshes(Check check)
+{
+	for (const Recipe& recipe : recipes()) {
+		CAPTURE(recipe.name);
+		const TriangleMesh mesh = recipe.make(1200);
+		if (mesh.face_count() > 3000)
+			continue;
+		check(StepFixture(mesh).workspace);
+	}
+}
+
 } // namespace
 
 TEST_CASE("Rings inside a patch are those of the mesh", "[patch]")
 {
-	for (const Recipe& recipe : recipes()) {
-		CAPTURE(recipe.name);
-		const TriangleMesh mesh = recipe.make(1200);
-		if (mesh.face_count() > 3000)
-			continue;
-		const StepFixture f(mesh);
-		check_rings(f.workspace, 3);
-	}
+	on_small_meshes([](const Workspace& workspace) { check_rings(workspace, 3); });
 }
 
 TEST_CASE("The vertices of a collection are those of its faces", "[patch]")
 {
-	for (const Recipe& recipe : recipes()) {
-		CAPTURE(recipe.name);
-		const TriangleMesh mesh = recipe.make(1200);
-		if (mesh.face_count() > 3000)
-			continue;
-		const StepFixture f(mesh);
+	on_small_meshes([](const Workspace& workspace) {
 		for (const int rings : {0, 3})
-			check_vertices(f.workspace, rings);
-	}
+			check_vertices(workspace, rings);
+	});
 }
 
 TEST_CASE("Patches of a mesh that is cut up keep their surroundings", "[patch]")

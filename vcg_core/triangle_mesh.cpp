@@ -17,14 +17,6 @@ const Point& corner(const std::vector<Point>& positions, const Face& face, std::
 	return positions[static_cast<std::size_t>(face[k])];
 }
 
-double longest_edge_squared(const std::vector<Point>& positions, const Face& face)
-{
-	const Point& a = corner(positions, face, 0);
-	const Point& b = corner(positions, face, 1);
-	const Point& c = corner(positions, face, 2);
-	return std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-}
-
 // Twice the area over the longest edge squared: below this the direction of the cross product is
 // mostly rounding of coordinates that a host may keep in single precision.
 constexpr double DEGENERATE_RATIO = 1e-14;
@@ -93,6 +85,14 @@ FaceGeometry face_geometry(const std::vector<Point>& positions, const std::vecto
 	for (std::size_t i = 0; i < faces.size(); ++i)
 		geometry.measure(positions, faces, i);
 	return geometry;
+}
+
+double longest_edge_squared(const std::vector<Point>& positions, const Face& face)
+{
+	const Point& a = corner(positions, face, 0);
+	const Point& b = corner(positions, face, 1);
+	const Point& c = corner(positions, face, 2);
+	return std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
 }
 
 double perimeter(const std::vector<Point>& positions, const Face& face)

@@ -68,6 +68,9 @@ bool is_degenerate(const std::vector<Point>& positions, const Face& face);
 /// Normals, centroids and areas of all faces, computed in one pass. #F each.
 FaceGeometry face_geometry(const std::vector<Point>& positions, const std::vector<Face>& faces);
 
+/// Square of the length of a face's longest edge.
+double longest_edge_squared(const std::vector<Point>& positions, const Face& face);
+
 /// Sum of the lengths of a face's edges.
 double perimeter(const std::vector<Point>& positions, const Face& face);
 

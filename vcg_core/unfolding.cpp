@@ -143,16 +143,6 @@ private:
 		return face_cross_product(positions_, faces_[at(face)]);
 	}
 
-	double longest_side_squared(const Face& face) const
-	{
-		double longest = 0;
-		for (std::size_t k = 0; k < 3; ++k) {
-			const Point& next = positions_[at(face[(k + 1) % 3])];
-			longest = std::max(longest, (next - positions_[at(face[k])]).squaredNorm());
-		}
-		return longest;
-	}
-
 	Surroundings surroundings_of(Index face) const
 	{
 		Surroundings result;
@@ -305,7 +295,7 @@ private:
 		for (const Index face : faces) {
 			Aim aim = aim_of(face);
 			const Point cross = cross_product(face);
-			const double square = longest_side_squared(faces_[at(face)]);
+			const double square = longest_edge_squared(positions_, faces_[at(face)]);
 			// The others keep what they have.
 			if (!is_folded(face, aim))
 				aim.area = square > 0 ? std::min(AREA, cross.dot(aim.witness) / square) : 0.0;
@@ -355,7 +345,7 @@ private:
 		std::vector<int> counts(fold.vertices.size(), 0);
 		for (const FoldFace& entry : fold.faces) {
 			const Face& face = faces_[at(entry.face)];
-			const double side = longest_side_squared(face);
+			const double side = longest_edge_squared(positions_, face);
 			const double missing =
 				entry.aim.area * side - cross_product(entry.face).dot(entry.aim.witness);
 			if (entry.aim.witness.isZero(0) || missing <= 0 || side <= 0)

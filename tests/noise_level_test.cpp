@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "noise_level.h"
 
+#include "method_support.h"
 #include "recipes.h"
-#include "shapes.h"
-#include "step_fixture.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -85,6 +84,23 @@ TEST_CASE("Clean meshes read as clean", "[noise_level]")
 		CHECK(estimated(find_recipe(name).make(2000)) < 0.025);
 	}
 	CHECK(estimated(make_flat_grid(20)) < 1e-12);
+}
+
+TEST_CASE("Detail as small as the triangles is not noise", "[noise_level]")
+{
+	// Bumps of some two edges, as high as the noise or higher: scans simplified to few triangles
+	// are like that everywhere.
+	const TriangleMesh clean = with_correlated_noise(make_sphere(20000), 0.2, 2);
+	const StepFixture f(clean);
+	const NoiseLevels levels = estimate_noise_levels(f.workspace, clean.positions);
+	CHECK(levels.rough > 0.035);
+	CHECK(levels.flat < 0.025);
+	for (const double sigma : {0.1, 0.2, 0.3}) {
+		CAPTURE(sigma);
+		const TriangleMesh mesh = noisy(clean, sigma);
+		const double expected = true_level(clean, mesh);
+		CHECK(std::abs(estimated(mesh) - expected) < std::max(0.02, 0.15 * expected));
+	}
 }
 
 TEST_CASE("A mesh without neighbours enough reads as clean", "[noise_level]")

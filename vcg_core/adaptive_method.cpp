@@ -2,6 +2,7 @@
 #include "adaptive_method.h"
 
 #include "height_filter.h"
+#include "interpolation.h"
 #include "noise_correlation.h"
 #include "noise_level.h"
 #include "normal_filter.h"
@@ -123,12 +124,6 @@ constexpr int SCANNER_VERTEX_ITERATIONS = 60;
 constexpr double SCANNER_THRESHOLD = 0.6;
 constexpr double SCANNER_THRESHOLD_INCREMENT = 0.05;
 constexpr double SCANNER_SELECTION = 200;
-
-// How far a noise is on the way from one to another, 0 to 1.
-double way_between(double from, double to, double noise)
-{
-	return std::min(1.0, std::max(0.0, (noise - from) / (to - from)));
-}
 
 // Threshold of similar directions by noise level: strict while normals can be trusted, loose enough
 // for their scatter after the prefilter beyond.
@@ -501,12 +496,14 @@ void run_adaptive_method(
 	workspace.execution.begin_phase(0.05, 0.08, "estimating the noise");
 	const NoiseLevels levels = estimate_noise_levels(workspace, workspace.mesh.positions);
 	double correlation = options.noise_type == NoiseType::Scanner ? 1 : 0;
-	if (options.noise_type == NoiseType::Automatic && levels.flat >= LEAST_NOISE)
+	if (options.noise_type == NoiseType::Automatic && levels.rough >= LEAST_NOISE)
 		correlation = measure_noise_correlation(workspace, workspace.mesh.positions).certainty();
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
 	TriangleMesh mesh;
 	const double outliers = correlation < 1 ? put_outliers_back(workspace, levels, mesh) : 0;
-	result.estimated_noise = levels.flat + outliers * (levels.ordinary - levels.flat);
+	// Noise that goes together over several edges grows with the rings as detail does.
+	const double level = between(levels.flat, levels.rough, correlation);
+	result.estimated_noise = between(level, levels.ordinary, outliers);
 	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
 	result.resolved.noise_type = correlation > 0.5 ? NoiseType::Scanner : NoiseType::White;
 	const double noise = *result.resolved.noise_level * strength_factor(options.strength);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "noise_level.h"
 
+#include "interpolation.h"
 #include "local_heights.h"
 #include "sampling.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace orthopoly {
@@ -30,10 +32,28 @@ constexpr Quantile ORDINARY = {0.5, 0};
 // The quantile of so many variances is steady to about one per cent.
 constexpr Index SAMPLES = 20000;
 
-// Polynomials that tell the kind of noise: wide ones, since narrow ones follow an outlier, and a
-// few, since they are slow.
+// Polynomials that tell the kind of noise: wide ones, since narrow ones follow an outlier, and
+// fewer, since they are slow.
 constexpr int WIDE_RINGS = 4;
-constexpr std::size_t WIDE_SAMPLES = 500;
+constexpr std::size_t WIDE_SAMPLES = 2000;
+
+// Noise leaves the same over any number of rings, detail as small as the triangles leaves more the
+// wider they are. From two rings to three the detail's part grows by this factor at least, or by
+// that from three to four where it is more.
+constexpr double GROWTH_OF_DETAIL = 1.9;
+
+// Growth of the variance that is not taken for that of detail: a little comes of curvature, and of
+// noise that is not Gaussian.
+constexpr double GROWTH_OF_NOISE = 1.1;
+
+// Edges grow with the rings as well, but similar faces leave less than this part of what whole
+// rings do then; of detail they leave the second part at least.
+constexpr double EDGES = 0.85;
+constexpr double NO_EDGES = 0.91;
+
+// The shares of the variances that are compared.
+constexpr std::array<Quantile, 3> GROWING = {
+	Quantile {0.1, -1.2816}, Quantile {0.2, -0.8416}, Quantile {0.35, -0.3853}};
 
 // Where a mesh is so coarse that edges are everywhere, polynomials over whole rings take them for
 // noise. So do others, over the faces alone whose normals are within this cosine (37 degrees) of
@@ -228,15 +248,39 @@ std::vector<Variance> similar_variances(
 	return variances;
 }
 
-// The level of whole rings, or the one of similar faces where that shows edges in the first.
-double without_edges(double whole, double similar)
+/// Of whole rings around vertices: the narrow ones, and two wider.
+using VariancesByRings = std::array<std::vector<Variance>, 3>;
+
+// The share of the noise in what the narrow rings leave, the rest being detail.
+double share_of_noise(const VariancesByRings& variances)
+{
+	double sum = 0;
+	for (const Quantile& wanted : GROWING) {
+		std::array<double, 3> squares;
+		for (std::size_t k = 0; k < squares.size(); ++k) {
+			const double deviation = level(variances[k], wanted);
+			squares[k] = deviation * deviation;
+		}
+		const double growth = squares[1] - GROWTH_OF_NOISE * squares[0];
+		if (!(growth > 0 && squares[0] > 0)) {
+			sum += 1;
+			continue;
+		}
+		const double factor = std::max(GROWTH_OF_DETAIL, (squares[2] - squares[1]) / growth);
+		sum += std::max(0.0, 1 - growth / (factor - 1) / squares[0]);
+	}
+	return sum / static_cast<double>(GROWING.size());
+}
+
+// The level of whole rings, or that of similar faces where it shows edges in the first; in edge
+// lengths.
+double level_beside_edges(double whole, double similar, double length)
 {
 	const double without = similar / SIMILAR_LEVEL;
 	if (!(without > 0 && without < whole))
-		return whole;
-	const double share =
-		std::max(0.0, std::min(1.0, (SIMILAR_NEVER - without) / (SIMILAR_NEVER - SIMILAR_TO)));
-	return whole + share * (without - whole);
+		return whole / length;
+	const double share = way_between(SIMILAR_NEVER, SIMILAR_TO, without / length);
+	return (whole + share * (without - whole)) / length;
 }
 
 } // namespace
@@ -245,41 +289,56 @@ NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<
 {
 	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
 	const std::vector<Index> sample = sample_by_value(areas_around(workspace, positions), SAMPLES);
-	std::vector<Variance> variances(sample.size());
 	std::vector<LocalHeights> heights(
 		static_cast<std::size_t>(workspace.execution.threads()),
 		LocalHeights(workspace, positions, smooth));
-	workspace.execution.parallel_for(
-		static_cast<Index>(sample.size()), GRAIN, [&](Index begin, Index end, int worker) {
-			LocalHeights& local = heights[static_cast<std::size_t>(worker)];
-			for (Index i = begin; i < end; ++i) {
-				const auto at = static_cast<std::size_t>(i);
-				if (local.fit(sample[at], RINGS))
-					variances[at] = {local.variance(), local.free()};
-			}
-		});
+	// Calls visit(local, i) for every so-manieth of the sample, where there is a fit.
+	const auto fit_each = [&](std::size_t count, std::size_t every, int rings, auto visit) {
+		workspace.execution.parallel_for(
+			static_cast<Index>(count), GRAIN, [&](Index begin, Index end, int worker) {
+				LocalHeights& local = heights[static_cast<std::size_t>(worker)];
+				for (Index i = begin; i < end; ++i) {
+					const auto at = static_cast<std::size_t>(i);
+					if (local.fit(sample[every * at], rings))
+						visit(local, at);
+				}
+			});
+	};
+	VariancesByRings variances;
+	variances[0].resize(sample.size());
+	fit_each(sample.size(), 1, RINGS, [&](const LocalHeights& local, std::size_t i) {
+		variances[0][i] = {local.variance(), local.free()};
+	});
 	const std::size_t every = std::max<std::size_t>(1, sample.size() / WIDE_SAMPLES);
-	std::vector<double> ratios(sample.size() / every, -1);
-	workspace.execution.parallel_for(
-		static_cast<Index>(ratios.size()), 4, [&](Index begin, Index end, int worker) {
-			LocalHeights& local = heights[static_cast<std::size_t>(worker)];
-			for (Index i = begin; i < end; ++i) {
-				const auto at = static_cast<std::size_t>(i);
-				if (local.fit(sample[every * at], WIDE_RINGS))
-					ratios[at] = local.median_ratio();
-			}
+	const std::size_t wide = sample.size() / every;
+	std::vector<double> ratios(wide, -1);
+	for (std::size_t k = 1; k < variances.size(); ++k) {
+		variances[k].resize(wide);
+		const int rings = RINGS + static_cast<int>(k);
+		fit_each(wide, every, rings, [&](LocalHeights& local, std::size_t i) {
+			variances[k][i] = {local.variance(), local.free()};
+			if (rings == WIDE_RINGS)
+				ratios[i] = local.median_ratio();
 		});
+	}
 	ratios.erase(std::remove(ratios.begin(), ratios.end(), -1), ratios.end());
 	NoiseLevels result;
 	if (!ratios.empty())
 		result.median_ratio = quantile(ratios, 0.5);
-	const double flat = level(variances, FLAT);
+	const double flat = level(variances[0], FLAT);
 	const double length = clean_edge_length(workspace, positions, smooth, flat);
 	if (length > 0) {
 		const std::vector<Variance> similar =
 			similar_variances(workspace, positions, smooth, sample);
-		result.flat = without_edges(flat / length, level(similar, SIMILAR_FLAT) / length);
-		result.ordinary = level(variances, ORDINARY) / length;
+		const double without_edges = level(similar, SIMILAR_FLAT);
+		result.rough = level_beside_edges(flat, without_edges, length);
+		result.flat = result.rough;
+		const double share = way_between(EDGES, NO_EDGES, without_edges / flat);
+		if (share > 0) {
+			const double white = std::sqrt(share_of_noise(variances)) * flat / length;
+			result.flat -= share * std::max(0.0, result.rough - white);
+		}
+		result.ordinary = level(variances[0], ORDINARY) / length;
 	}
 	return result;
 }

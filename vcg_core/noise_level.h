@@ -13,13 +13,18 @@ namespace orthopoly {
 /// leaves is noise where the surface is smooth. A low quantile of the residual variances, each
 /// normalised by its degrees of freedom, keeps edges out. Where edges are too close to each other
 /// for that, so that polynomials over the similar faces alone leave less, the level is what these
-/// leave. Zero where no vertex has neighbours enough. O(#V) time.
+/// leave. Where polynomials over more rings leave more, the growth tells how much of it is detail
+/// as small as the triangles, which is no noise. Zero where no vertex has neighbours enough. O(#V)
+/// time.
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions);
 
-/// The same at two quantiles, and what kind of noise it is.
+/// The same in several ways, and what kind of noise it is.
 struct NoiseLevels {
 	/// In the flatter places: what `estimate_noise_level` gives. Misses outliers that are rare.
 	double flat = 0;
+	/// The same with what is taken for detail: noise that goes together over several edges grows
+	/// like it.
+	double rough = 0;
 	/// In ordinary places: with rare outliers, and on coarse meshes some of the surface itself.
 	double ordinary = 0;
 	/// Median ratio of the residuals of wide polynomials (see LocalHeights): 1 where the noise is

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+
+namespace orthopoly {
+
+/// How far a value is on the way from one to another, 0 to 1; the other may be the smaller one.
+inline double way_between(double from, double to, double value)
+{
+	return std::min(1.0, std::max(0.0, (value - from) / (to - from)));
+}
+
+} // namespace orthopoly

@@ -334,6 +334,32 @@ TEST_CASE("Impulsive noise goes without the surface", "[adaptive_method]")
 	}
 }
 
+TEST_CASE("Where outliers made the noise, the other vertices stay", "[adaptive_method]")
+{
+	// Rough all over, so that denoising takes detail from every vertex.
+	const TriangleMesh truth = with_correlated_noise(make_sphere(20000), 0.2, 2);
+	NoiseOptions options;
+	options.sigma = 0.5;
+	options.impulsive_share = 0.1;
+	const TriangleMesh mesh = with_positions(truth, add_noise(truth, options));
+	const ErrorMeasures before = measure(mesh, truth);
+	const ErrorMeasures after = errors_of(mesh, truth);
+	CHECK(after.mean_angle < 0.7 * before.mean_angle);
+	CHECK(after.msae < 0.45 * before.msae);
+	CHECK(after.vertex_error < 0.6 * before.vertex_error);
+}
+
+TEST_CASE("Detail as small as the triangles survives", "[adaptive_method]")
+{
+	const TriangleMesh truth = with_correlated_noise(make_sphere(20000), 0.2, 2);
+	CHECK(same_bits(run(truth).positions, truth.positions));
+	const TriangleMesh mesh = noisy(truth, 0.1);
+	const ErrorMeasures before = measure(mesh, truth);
+	const ErrorMeasures after = errors_of(mesh, truth);
+	CHECK(after.mean_angle < 0.6 * before.mean_angle);
+	CHECK(after.vertex_error < 0.7 * before.vertex_error);
+}
+
 TEST_CASE("A clean mesh stays as it is", "[adaptive_method]")
 {
 	for (const std::string name :

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "adaptive_method.h"
 
+#include "detail.h"
 #include "height_filter.h"
 #include "interpolation.h"
 #include "noise_correlation.h"
@@ -55,12 +56,22 @@ constexpr double DRIFT_BOUND = 5;
 // Median ratio (see NoiseLevels) from which there is no need to look for outliers.
 constexpr double NO_OUTLIERS = 0.9;
 
+// Where the level of flat places is less than these parts of that of ordinary ones, the ratio tells
+// nothing, since detail has a like one, and neither do the residuals after a few rounds: outliers
+// are looked for whatever they say.
+constexpr double WHITE = 0.8;
+constexpr double DETAILED = 0.56;
+
 // What is left of the noise level without the outliers, at which they are put back before anything
 // else (fully at the second value): white noise loses a twentieth with them, noise whose amplitude
-// varies a seventh, impulsive noise more than half, but a third only where edges are so close that
-// most places have one; there the normals are the better judges of where the outliers belong.
+// varies a seventh, impulsive noise nearly all.
 constexpr double OUTLIERS_FROM = 0.7;
 constexpr double OUTLIERS_FULL = 0.5;
+
+// Share of the vertices found to be outliers up to which the others are taken for measured rightly,
+// and from which there must be too many among them that were not found.
+constexpr double FEW_OUTLIERS = 0.05;
+constexpr double MANY_OUTLIERS = 0.15;
 
 // Iterations, the last of which makes the result, and those before better guides for it. Up to the
 // first noise guides need no improving, and filtering twice would only cost detail; from there to
@@ -328,6 +339,9 @@ public:
 			if (!last && plan_.guiding < 1)
 				go_back(start, 1 - plan_.guiding);
 		}
+		// Noise that goes together over several edges moves vertices together as well.
+		if (plan_.correlation < 1)
+			give_back_detail(workspace_, sigma_, 1 - plan_.correlation, positions_);
 	}
 
 private:
@@ -464,25 +478,47 @@ private:
 	std::vector<Point>& positions_;
 };
 
-// Makes a mesh with the outliers put back, as far as they explain the noise (in ordinary places,
-// whose level is given). Returns how far that is, from 0 to 1.
-double put_outliers_back(const Workspace& workspace, const NoiseLevels& levels, TriangleMesh& mesh)
+/// What outliers make of the noise.
+struct OutlierNoise {
+	/// How far they explain it, 0 to 1.
+	double share = 0;
+	/// The level then, in mean edge lengths: that of all vertices, without the detail of the
+	/// surface.
+	double level = 0;
+	/// The level that is left without the outliers.
+	double left = 0;
+	/// The share of the vertices that are some.
+	double found = 0;
+};
+
+// Makes a mesh with the outliers put back, as far as they explain the noise.
+OutlierNoise
+put_outliers_back(const Workspace& workspace, const NoiseLevels& levels, TriangleMesh& mesh)
 {
 	const double noise = levels.ordinary;
-	if (noise < LEAST_NOISE || levels.median_ratio > NO_OUTLIERS)
-		return 0;
-	const Outliers outliers = put_back_outliers(workspace, workspace.mesh.positions, noise);
+	const bool may_be_detail = levels.flat < WHITE * noise;
+	if (noise < LEAST_NOISE || (levels.median_ratio > NO_OUTLIERS && !may_be_detail))
+		return {};
+	const Outliers outliers = put_back_outliers(
+		workspace, workspace.mesh.positions, levels.flat < DETAILED * noise ? 0 : noise);
 	if (outliers.count == 0)
-		return 0;
-	const double left = estimate_noise_levels(workspace, outliers.positions).ordinary / noise;
-	const double share =
-		std::min(1.0, std::max(0.0, (OUTLIERS_FROM - left) / (OUTLIERS_FROM - OUTLIERS_FULL)));
+		return {};
+	const NoiseLevels after = estimate_noise_levels(workspace, outliers.positions);
+	// What is left without them is noise of all vertices, and detail.
+	const double removed = noise * noise - after.ordinary * after.ordinary;
+	OutlierNoise result;
+	result.level = std::sqrt(std::max(0.0, removed + after.flat * after.flat));
+	if (!(result.level >= LEAST_NOISE))
+		return {};
+	result.left = after.flat;
+	result.found = static_cast<double>(outliers.count) / workspace.mesh.vertex_count();
+	result.share = way_between(OUTLIERS_FROM, OUTLIERS_FULL, result.left / result.level);
 	mesh = workspace.mesh;
 	for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
 		if (outliers.flags[i] != 0)
-			mesh.positions[i] += share * (outliers.positions[i] - mesh.positions[i]);
+			mesh.positions[i] += result.share * (outliers.positions[i] - mesh.positions[i]);
 	}
-	return share;
+	return result;
 }
 
 } // namespace
@@ -500,10 +536,12 @@ void run_adaptive_method(
 		correlation = measure_noise_correlation(workspace, workspace.mesh.positions).certainty();
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
 	TriangleMesh mesh;
-	const double outliers = correlation < 1 ? put_outliers_back(workspace, levels, mesh) : 0;
+	OutlierNoise outliers;
+	if (correlation < 1)
+		outliers = put_outliers_back(workspace, levels, mesh);
 	// Noise that goes together over several edges grows with the rings as detail does.
 	const double level = between(levels.flat, levels.rough, correlation);
-	result.estimated_noise = between(level, levels.ordinary, outliers);
+	result.estimated_noise = between(level, outliers.level, outliers.share);
 	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
 	result.resolved.noise_type = correlation > 0.5 ? NoiseType::Scanner : NoiseType::White;
 	const double noise = *result.resolved.noise_level * strength_factor(options.strength);
@@ -513,10 +551,15 @@ void run_adaptive_method(
 		result.status = DenoiseResult::Status::NothingToDo;
 		return;
 	}
-	if (outliers > 0) {
+	if (outliers.share > 0) {
 		const Workspace repaired(mesh, workspace.execution);
 		positions = mesh.positions;
 		AdaptiveMethod(repaired, plan, positions).run();
+		give_back_inliers(
+			repaired,
+			outliers.left * workspace.mean_edge_length,
+			outliers.share * way_between(MANY_OUTLIERS, FEW_OUTLIERS, outliers.found),
+			positions);
 	}
 	else {
 		AdaptiveMethod(workspace, plan, positions).run();

@@ -84,7 +84,7 @@ public:
 		for (int round = 1; round <= ROUNDS; ++round) {
 			fit();
 			weigh();
-			if (round == TRIAL_ROUNDS) {
+			if (round == TRIAL_ROUNDS && noise > 0) {
 				std::vector<double> deviations = deviations_;
 				if (quantile(deviations, BETTER) > SUSPICIOUS * noise)
 					return {std::move(flags_), std::move(positions_), 0};

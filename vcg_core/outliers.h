@@ -27,7 +27,8 @@ struct Outliers {
 /// are their neighbours, and it is by these that the distance is judged. Fixed vertices stay, and
 /// all do where the noise is not made by outliers.
 ///
-/// @param noise the level as `estimate_noise_level` reads it, outliers and all
+/// @param noise the level in ordinary places (`NoiseLevels`), outliers and all; 0 where detail is
+///              part of it, which says nothing of what makes the noise
 ///
 /// O(#V) time; the same bits on any number of threads. Throws Cancelled.
 Outliers

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "detail.h"
+
+#include "measures.h"
+#include "method_support.h"
+#include "recipes.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+using namespace orthopoly;
+
+namespace {
+
+// Root mean square of the distances between two meshes' vertices whose flag is as wanted.
+double distance(
+	const std::vector<Point>& a,
+	const std::vector<Point>& b,
+	const std::vector<bool>& flags,
+	bool wanted)
+{
+	double sum = 0;
+	double count = 0;
+	for (std::size_t i = 0; i < a.size(); ++i) {
+		if (flags[i] == wanted) {
+			sum += (a[i] - b[i]).squaredNorm();
+			++count;
+		}
+	}
+	return std::sqrt(sum / count);
+}
+
+} // namespace
+
+TEST_CASE("Noise alone is not given back", "[detail]")
+{
+	const auto direction =
+		GENERATE(NoiseDirection::Normal, NoiseDirection::Random, NoiseDirection::Isotropic);
+	const TriangleMesh truth = make_sphere(20000);
+	const StepFixture f(noisy(truth, 0.2, direction));
+	std::vector<Point> positions = truth.positions;
+	const double sigma = direction == NoiseDirection::Random ? 0.2 / std::sqrt(3) : 0.2;
+	give_back_detail(f.workspace, sigma * f.workspace.mean_edge_length, 1, positions);
+	std::size_t moved = 0;
+	for (std::size_t i = 0; i < positions.size(); ++i)
+		moved += !same_bits(positions[i], truth.positions[i]);
+	CHECK(moved < 0.002 * static_cast<double>(positions.size()));
+}
+
+TEST_CASE("Detail beyond the noise is given back, as far as it is detail", "[detail]")
+{
+	// One half of the square is rough, three times as much as the noise; both halves were smoothed.
+	const TriangleMesh flat = make_flat_grid(60);
+	const double edge = mean_edge_length(flat.positions, flat.faces);
+	const double sigma = 0.1 * edge;
+	TriangleMesh truth = flat;
+	std::vector<bool> rough(flat.positions.size());
+	std::mt19937 generator(5);
+	for (std::size_t i = 0; i < rough.size(); ++i) {
+		rough[i] = flat.positions[i].x() < 0.5;
+		if (rough[i])
+			truth.positions[i].z() = generator() % 2 == 0 ? 3 * sigma : -3 * sigma;
+	}
+	const StepFixture f(with_positions(truth, noisy(truth, 0.1).positions));
+	std::vector<Point> positions = flat.positions;
+	give_back_detail(f.workspace, sigma, 1, positions);
+	const double before = distance(flat.positions, truth.positions, rough, true);
+	CHECK(distance(positions, truth.positions, rough, true) < 0.5 * before);
+	// The flat half stays as it was, but for the rows next to the other.
+	const double noise = distance(f.mesh.positions, truth.positions, rough, false);
+	CHECK(distance(positions, truth.positions, rough, false) < 0.3 * noise);
+	// Half of the way at most.
+	std::vector<Point> halfway = flat.positions;
+	give_back_detail(f.workspace, sigma, 0.5, halfway);
+	for (std::size_t i = 0; i < positions.size(); ++i)
+		CHECK((flat.positions[i] + positions[i]).isApprox(2 * halfway[i], 1e-12));
+}
+
+TEST_CASE("A vertex far off does not make its surroundings detail", "[detail]")
+{
+	TriangleMesh mesh = make_flat_grid(40);
+	const std::size_t middle = 20 * 41 + 20;
+	mesh.positions[middle].z() = 1;
+	const StepFixture f(mesh);
+	std::vector<Point> positions = make_flat_grid(40).positions;
+	give_back_detail(f.workspace, 0.1 * f.workspace.mean_edge_length, 1, positions);
+	CHECK(positions[middle].z() < 0.2);
+}
+
+TEST_CASE("Inliers are given back, outliers are not", "[detail]")
+{
+	// Denoising took the detail of all vertices, and one in ten of these was an outlier.
+	const TriangleMesh flat = make_flat_grid(60);
+	const double edge = mean_edge_length(flat.positions, flat.faces);
+	TriangleMesh truth = flat;
+	std::mt19937 generator(5);
+	for (Point& p : truth.positions)
+		p.z() = (generator() % 2 == 0 ? 0.02 : -0.02) * edge;
+	TriangleMesh mesh = truth;
+	std::vector<bool> outlying(mesh.positions.size());
+	for (std::size_t i = 0; i < outlying.size(); ++i) {
+		outlying[i] = generator() % 10 == 0;
+		if (outlying[i])
+			mesh.positions[i].z() += 0.5 * edge;
+	}
+	const StepFixture f(mesh);
+	std::vector<Point> positions = flat.positions;
+	give_back_inliers(f.workspace, 0, 1, positions);
+	CHECK(distance(positions, truth.positions, outlying, false) == 0);
+	CHECK(distance(positions, flat.positions, outlying, true) == 0);
+	// Where all vertices are as noisy as that, none is.
+	std::vector<Point> noise = flat.positions;
+	give_back_inliers(f.workspace, 0.03 * edge, 1, noise);
+	CHECK(same_bits(noise, flat.positions));
+}
+
+TEST_CASE("Fixed vertices stay where they were put", "[detail]")
+{
+	TriangleMesh mesh = noisy(make_flat_grid(20), 0.3);
+	mesh.fixed.assign(mesh.positions.size(), 1);
+	const StepFixture f(mesh);
+	const std::vector<Point> flat = make_flat_grid(20).positions;
+	std::vector<Point> positions = flat;
+	give_back_detail(f.workspace, 1e-6, 1, positions);
+	give_back_inliers(f.workspace, 0, 1, positions);
+	CHECK(same_bits(positions, flat));
+}
+
+TEST_CASE("What is given back is the same on any number of threads", "[detail][parallel]")
+{
+	const TriangleMesh truth = make_sphere(20000);
+	const TriangleMesh mesh = noisy(truth, 0.2);
+	std::vector<std::vector<Point>> results;
+	for (const int threads : {1, 2, 3}) {
+		const StepFixture f(mesh, threads);
+		std::vector<Point> positions = truth.positions;
+		give_back_detail(f.workspace, 0.1 * f.workspace.mean_edge_length, 1, positions);
+		give_back_inliers(f.workspace, 0.01 * f.workspace.mean_edge_length, 1, positions);
+		results.push_back(positions);
+	}
+	CHECK(same_bits(results[0], results[1]));
+	CHECK(same_bits(results[0], results[2]));
+}

@@ -54,10 +54,10 @@ const std::vector<Case> CASES = {
 	{"torus", 0.1, RANDOM, {1.5, 0.00073, 0.024, 0}, {1.3, 0.00055, 0.032, 0}},
 	{"torus", 0.3, NORMAL, {3.4, 0.0038, 0.084, 0}, {3.6, 0.0073, 0.1, 0}},
 	{"torus", 0.3, RANDOM, {3.1, 0.0034, 0.058, 0}, {6, 0.059, 0.091, 34}},
-	{"height_field", 0.1, NORMAL, {3.9, 0.013, 0.089, 0}, {18, 0.19, 0.49, 42}},
-	{"height_field", 0.1, RANDOM, {2.4, 0.0044, 0.049, 0}, {17, 0.17, 0.47, 35}},
+	{"height_field", 0.1, NORMAL, {3.5, 0.0092, 0.082, 0}, {18, 0.19, 0.49, 42}},
+	{"height_field", 0.1, RANDOM, {2.3, 0.0039, 0.047, 0}, {17, 0.17, 0.47, 35}},
 	{"height_field", 0.3, NORMAL, {8.1, 0.046, 0.19, 0}, {18, 0.2, 0.5, 45}},
-	{"height_field", 0.3, RANDOM, {6.1, 0.031, 0.13, 0}, {21, 0.33, 0.5, 134}},
+	{"height_field", 0.3, RANDOM, {5.9, 0.028, 0.12, 0}, {21, 0.33, 0.5, 134}},
 };
 
 ErrorMeasures measured(const TriangleMesh& mesh, const TriangleMesh& truth, Method method)

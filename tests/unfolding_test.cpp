@@ -98,6 +98,59 @@ TEST_CASE("A target that none around agrees with is not believed", "[unfolding]"
 	CHECK(count_turned(f, positions) == 0);
 }
 
+TEST_CASE("A folded face without a target is turned to where those around look", "[unfolding]")
+{
+	const TriangleMesh mesh = folded_grid();
+	const StepFixture f(mesh);
+	std::vector<Point> normals(mesh.faces.size(), UP);
+	Index folded = 0;
+	for (std::size_t i = 0; i < normals.size(); ++i) {
+		if (f.geometry.normals[i].z() < 0) {
+			normals[i] = Point::Zero();
+			++folded;
+		}
+	}
+	REQUIRE(folded == 2);
+	std::vector<Point> positions = mesh.positions;
+	CHECK(unfold_faces(f.workspace, normals, positions));
+	for (const Face& face : mesh.faces)
+		CHECK(face_cross_product(positions, face).z() > 0);
+}
+
+TEST_CASE("The tip of a face with two edges on the outline is turned back", "[unfolding]")
+{
+	TriangleMesh mesh = make_flat_grid(8);
+	std::vector<std::size_t> tips;
+	{
+		const StepFixture flat(mesh);
+		for (Index i = 0; i < mesh.vertex_count(); ++i) {
+			if (flat.workspace.vertex_faces.size(i) == 1)
+				tips.push_back(static_cast<std::size_t>(i));
+		}
+	}
+	REQUIRE(tips.size() == 2);
+	const Point corner = mesh.positions[tips[0]];
+	// Beyond the diagonal of its square.
+	mesh.positions[tips[0]] += 0.7 / 8 * (Point(1, 1, 0) - 2 * corner);
+	const StepFixture f(mesh);
+	const std::vector<Point> up(mesh.faces.size(), UP);
+	std::vector<Point> positions = mesh.positions;
+	REQUIRE(count_turned(f, positions) == 1);
+	CHECK(unfold_faces(f.workspace, up, positions));
+	CHECK(count_turned(f, positions) == 0);
+	for (std::size_t i = 0; i < positions.size(); ++i) {
+		if (i != tips[0] && f.workspace.edges.boundary[i] != 0)
+			CHECK(same_bits(positions[i], mesh.positions[i]));
+	}
+	TriangleMesh held = mesh;
+	held.fixed.assign(held.positions.size(), 0);
+	held.fixed[tips[0]] = 1;
+	const StepFixture g(held);
+	positions = held.positions;
+	unfold_faces(g.workspace, up, positions);
+	CHECK(same_bits(positions[tips[0]], held.positions[tips[0]]));
+}
+
 TEST_CASE("A face on the wrong side of an edge is turned to less than a right angle", "[unfolding]")
 {
 	// One face of the flat side, with its targets, taken for one of a wall beyond a right angle.

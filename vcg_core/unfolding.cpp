@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "unfolding.h"
 
+#include "fold_aims.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -12,29 +14,9 @@ namespace orthopoly {
 
 namespace {
 
-// Normals within this cosine (60 degrees) are of the same side of an edge.
-constexpr double AGREEMENT = 0.5;
-
-// A face's cosine to its target that says folded, as in the vertex update.
-constexpr double FOLDED = 0.3;
-
-// The cosine to two faces across its edges that agree with each other, but not with the face, that
-// says folded: around a sharp edge of a box it is zero, give or take what noise leaves.
-constexpr double FOLDED_AT_EDGE = -0.1;
-
-// Edges sharper than this cosine between the normals are knife edges, where two faces that look the
-// other way prove nothing.
-constexpr double KNIFE_EDGE = -0.2;
-
 // A face within this cosine of the mean around it needs no closer look: where two out of three
 // faces across its edges look the other way, the mean is much further off.
 constexpr double PLAIN = 0.8;
-
-// Doubled projected area over the square of the longest side, for equal heights their ratio, that a
-// face turned back is given: as narrow as triangles of common meshes are, and wide enough that what
-// is left of the noise does not turn it again. Half of it where its target lies the other way.
-constexpr double AREA = 0.1;
-constexpr double AREA_AT_EDGE = 0.05;
 
 // Steps of a try, and tries, each with a ring of vertices more: nearly all folds open in the first.
 constexpr int STEPS = 30;
@@ -45,43 +27,10 @@ std::size_t at(Index index)
 	return static_cast<std::size_t>(index);
 }
 
-/// What a face has to look towards.
-struct Aim {
-	/// Zero: anywhere.
-	Point witness;
-	/// Cosine to the witness up to which the face is folded.
-	double folded;
-	/// What it has to be like.
-	Point target;
-	/// See AREA.
-	double area;
-};
-
-/// The targets across the edges of a face.
-struct Surroundings {
-	Point sum = Point::Zero();
-	int agreeing = 0;
-	/// Those that do not agree with the face's.
-	std::array<Point, 3> others;
-	std::size_t other_count = 0;
-
-	/// Mean of the others where there are at least two and all agree with each other, else zero.
-	Point united() const
-	{
-		Point mean = Point::Zero();
-		for (std::size_t k = 0; k < other_count; ++k) {
-			if (others[k].dot(others[(k + 1) % other_count]) < AGREEMENT)
-				return Point::Zero();
-			mean += others[k];
-		}
-		return other_count < 2 ? Point(Point::Zero()) : Point(mean.normalized());
-	}
-};
-
 /// A face near a fold.
 struct FoldFace {
 	Index face;
-	Aim aim;
+	FoldAim aim;
 	/// Its weight in the sum over all of them.
 	double weight;
 	/// Before the first step.
@@ -143,68 +92,11 @@ private:
 		return face_cross_product(positions_, faces_[at(face)]);
 	}
 
-	Surroundings surroundings_of(Index face) const
-	{
-		Surroundings result;
-		const Face& corners = faces_[at(face)];
-		for (std::size_t k = 0; k < 3; ++k) {
-			const Index to = corners[(k + 1) % 3];
-			Index across = -1;
-			int found = 0;
-			for (const Index* it = workspace_.vertex_faces.begin(corners[k]);
-				 it != workspace_.vertex_faces.end(corners[k]);
-				 ++it) {
-				const Face& other = faces_[at(*it)];
-				if (*it != face && std::find(other.begin(), other.end(), to) != other.end()) {
-					across = *it;
-					++found;
-				}
-			}
-			if (found != 1 || normals_[at(across)].isZero(0))
-				continue;
-			const Point& normal = normals_[at(across)];
-			result.sum += normal;
-			if (normal.dot(normals_[at(face)]) > AGREEMENT)
-				++result.agreeing;
-			else
-				result.others[result.other_count++] = normal;
-		}
-		return result;
-	}
+	FoldAim aim_of(Index face) const { return fold_aim(workspace_, normals_, positions_, face); }
 
-	Aim aim_of(Index face) const
+	bool is_folded(Index face, const FoldAim& aim) const
 	{
-		const Point& target = normals_[at(face)];
-		Aim believed = {target, FOLDED, target, AREA};
-		Aim none = {Point::Zero(), 0, target, 0};
-		if (target.isZero(0))
-			return none;
-		const Surroundings around = surroundings_of(face);
-		if (around.agreeing > 1)
-			return believed;
-		const Point normal = cross_product(face).normalized();
-		const Point united = around.united();
-		if (around.agreeing == 0 && around.sum.dot(target) <= AGREEMENT * around.sum.norm() &&
-			normal.dot(target) < AGREEMENT)
-			return united.isZero(0) ? none : Aim {united, 0, united, AREA};
-		if (normal.dot(target) < FOLDED) {
-			// On the other side of an edge, not folded: eq. 12 would have followed the target.
-			const auto* const end = around.others.begin() + around.other_count;
-			const bool other_side =
-				std::any_of(around.others.begin(), end, [&](const Point& other) {
-					return normal.dot(other) > AGREEMENT;
-				});
-			return other_side ? none : believed;
-		}
-		if (normal.dot(united) < FOLDED_AT_EDGE && target.dot(united) > KNIFE_EDGE)
-			return {united, 0, target, AREA_AT_EDGE};
-		return believed;
-	}
-
-	bool is_folded(Index face, const Aim& aim) const
-	{
-		const Point cross = cross_product(face);
-		return !aim.witness.isZero(0) && cross.dot(aim.witness) <= aim.folded * cross.norm();
+		return orthopoly::is_folded(cross_product(face), aim);
 	}
 
 	std::vector<Index> find_folded() const
@@ -285,27 +177,32 @@ private:
 					workspace_.vertex_faces.end(vertex));
 			make_unique(faces);
 		}
+		// The outline stays, but for the tip of a face with two edges on it: the face has no other
+		// corner to be turned back by.
 		const auto stays = [&](Index vertex) {
-			return workspace_.mesh.is_fixed(vertex) || workspace_.edges.boundary[at(vertex)] != 0;
+			return workspace_.mesh.is_fixed(vertex) ||
+				   (workspace_.edges.boundary[at(vertex)] != 0 &&
+					workspace_.vertex_faces.size(vertex) > 1);
 		};
 		fold.vertices.erase(
 			std::remove_if(fold.vertices.begin(), fold.vertices.end(), stays), fold.vertices.end());
 		for (std::size_t k = 0; k < fold.vertices.size(); ++k)
 			fold.places[fold.vertices[k]] = k;
 		for (const Index face : faces) {
-			Aim aim = aim_of(face);
+			FoldAim aim = aim_of(face);
 			const Point cross = cross_product(face);
 			const double square = longest_edge_squared(positions_, faces_[at(face)]);
 			// The others keep what they have.
 			if (!is_folded(face, aim))
-				aim.area = square > 0 ? std::min(AREA, cross.dot(aim.witness) / square) : 0.0;
+				aim.area =
+					square > 0 ? std::min(UNFOLDED_AREA, cross.dot(aim.witness) / square) : 0.0;
 			fold.faces.push_back({face, aim, cross.norm(), cosine_of(face, aim)});
 		}
 		return fold;
 	}
 
 	// To what it has to be like and what it has to look towards, both the same but at edges.
-	double cosine_of(Index face, const Aim& aim) const
+	double cosine_of(Index face, const FoldAim& aim) const
 	{
 		const Point cross = cross_product(face);
 		const double length = cross.norm();

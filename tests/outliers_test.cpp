@@ -77,6 +77,30 @@ TEST_CASE("Noise of all vertices has no outliers worth the name", "[outliers]")
 	}
 }
 
+TEST_CASE("Outliers explain impulsive noise, detail or not, and no other", "[outliers]")
+{
+	const auto repaired = [](const TriangleMesh& mesh) {
+		const StepFixture f(mesh);
+		return repair_outliers(f.workspace, estimate_noise_levels(f.workspace, mesh.positions));
+	};
+	const TriangleMesh smooth = make_sphere(8000);
+	const TriangleMesh rough = with_correlated_noise(make_sphere(8000), 0.2, 2);
+	for (const TriangleMesh& truth : {smooth, rough}) {
+		const TriangleMesh mesh = impulsive(truth, 0.4, 0.2);
+		const OutlierRepair outliers = repaired(mesh);
+		CHECK(outliers.share == 1);
+		CHECK(outliers.left < 0.3 * outliers.level);
+		CHECK(outliers.found > 0.04);
+		CHECK(outliers.found < 0.2);
+		const double before = measure(mesh, truth).mean_angle;
+		CHECK(measure(with_positions(mesh, outliers.positions), truth).mean_angle < 0.6 * before);
+		for (const TriangleMesh& other : {truth, noisy(truth, 0.2)}) {
+			CHECK(repaired(other).share == 0);
+			CHECK(repaired(other).positions.empty());
+		}
+	}
+}
+
 TEST_CASE("Fixed vertices stay, outliers or not", "[outliers]")
 {
 	TriangleMesh mesh = impulsive(make_sphere(4000), 0.4, 0.2);

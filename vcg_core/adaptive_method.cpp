@@ -22,10 +22,6 @@ namespace orthopoly {
 
 namespace {
 
-// Below this the estimate cannot be told from the detail of clean meshes (which read up to 0.023),
-// and the angles left are below three degrees.
-constexpr double LEAST_NOISE = 0.025;
-
 // Noise from which a prefilter pays (fading in until the second): below it faces do not fold, and
 // smoothing would only cost detail.
 constexpr double PREFILTER_FROM = 0.065;
@@ -52,21 +48,6 @@ constexpr double FOLD_COSINE = 0.3;
 // from the way to where the prefilter took it, so that outliers do come back). Noise of a Gaussian
 // length in random directions, whose spread along the normal the level is, reaches so far.
 constexpr double DRIFT_BOUND = 5;
-
-// Median ratio (see NoiseLevels) from which there is no need to look for outliers.
-constexpr double NO_OUTLIERS = 0.9;
-
-// Where the level of flat places is less than these parts of that of ordinary ones, the ratio tells
-// nothing, since detail has a like one, and neither do the residuals after a few rounds: outliers
-// are looked for whatever they say.
-constexpr double WHITE = 0.8;
-constexpr double DETAILED = 0.56;
-
-// What is left of the noise level without the outliers, at which they are put back before anything
-// else (fully at the second value): white noise loses a twentieth with them, noise whose amplitude
-// varies a seventh, impulsive noise nearly all.
-constexpr double OUTLIERS_FROM = 0.7;
-constexpr double OUTLIERS_FULL = 0.5;
 
 // Share of the vertices found to be outliers up to which the others are taken for measured rightly,
 // and from which there must be too many among them that were not found.
@@ -478,49 +459,6 @@ private:
 	std::vector<Point>& positions_;
 };
 
-/// What outliers make of the noise.
-struct OutlierNoise {
-	/// How far they explain it, 0 to 1.
-	double share = 0;
-	/// The level then, in mean edge lengths: that of all vertices, without the detail of the
-	/// surface.
-	double level = 0;
-	/// The level that is left without the outliers.
-	double left = 0;
-	/// The share of the vertices that are some.
-	double found = 0;
-};
-
-// Makes a mesh with the outliers put back, as far as they explain the noise.
-OutlierNoise
-put_outliers_back(const Workspace& workspace, const NoiseLevels& levels, TriangleMesh& mesh)
-{
-	const double noise = levels.ordinary;
-	const bool may_be_detail = levels.flat < WHITE * noise;
-	if (noise < LEAST_NOISE || (levels.median_ratio > NO_OUTLIERS && !may_be_detail))
-		return {};
-	const Outliers outliers = put_back_outliers(
-		workspace, workspace.mesh.positions, levels.flat < DETAILED * noise ? 0 : noise);
-	if (outliers.count == 0)
-		return {};
-	const NoiseLevels after = estimate_noise_levels(workspace, outliers.positions);
-	// What is left without them is noise of all vertices, and detail.
-	const double removed = noise * noise - after.ordinary * after.ordinary;
-	OutlierNoise result;
-	result.level = std::sqrt(std::max(0.0, removed + after.flat * after.flat));
-	if (!(result.level >= LEAST_NOISE))
-		return {};
-	result.left = after.flat;
-	result.found = static_cast<double>(outliers.count) / workspace.mesh.vertex_count();
-	result.share = way_between(OUTLIERS_FROM, OUTLIERS_FULL, result.left / result.level);
-	mesh = workspace.mesh;
-	for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-		if (outliers.flags[i] != 0)
-			mesh.positions[i] += result.share * (outliers.positions[i] - mesh.positions[i]);
-	}
-	return result;
-}
-
 } // namespace
 
 void run_adaptive_method(
@@ -535,10 +473,9 @@ void run_adaptive_method(
 	if (options.noise_type == NoiseType::Automatic && levels.rough >= LEAST_NOISE)
 		correlation = measure_noise_correlation(workspace, workspace.mesh.positions).certainty();
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
-	TriangleMesh mesh;
-	OutlierNoise outliers;
+	OutlierRepair outliers;
 	if (correlation < 1)
-		outliers = put_outliers_back(workspace, levels, mesh);
+		outliers = repair_outliers(workspace, levels);
 	// Noise that goes together over several edges grows with the rings as detail does.
 	const double level = between(levels.flat, levels.rough, correlation);
 	result.estimated_noise = between(level, outliers.level, outliers.share);
@@ -552,8 +489,10 @@ void run_adaptive_method(
 		return;
 	}
 	if (outliers.share > 0) {
+		positions = outliers.positions;
+		TriangleMesh mesh = workspace.mesh;
+		mesh.positions = outliers.positions;
 		const Workspace repaired(mesh, workspace.execution);
-		positions = mesh.positions;
 		AdaptiveMethod(repaired, plan, positions).run();
 		give_back_inliers(
 			repaired,

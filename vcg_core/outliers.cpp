@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "outliers.h"
 
+#include "interpolation.h"
 #include "local_heights.h"
 #include "sampling.h"
 
@@ -59,6 +60,21 @@ constexpr double OUTLIER_WEIGHT = 0.1;
 
 // Umbrella steps that centre outliers among their neighbours, across the normal.
 constexpr int CENTERING_STEPS = 5;
+
+// Median ratio (see NoiseLevels) from which there is no need to look for outliers.
+constexpr double NO_OUTLIERS = 0.9;
+
+// Where the level of flat places is less than these parts of that of ordinary ones, the ratio tells
+// nothing, since detail has a like one, and neither does the trial: outliers are looked for
+// whatever they say.
+constexpr double WHITE = 0.8;
+constexpr double DETAILED = 0.56;
+
+// What is left of the noise level without the outliers, at which they explain it (fully at the
+// second value): white noise loses a twentieth with them, noise whose amplitude varies a seventh,
+// impulsive noise nearly all.
+constexpr double UNEXPLAINED = 0.7;
+constexpr double EXPLAINED = 0.5;
 
 constexpr Index GRAIN = 256;
 
@@ -266,6 +282,35 @@ put_back_outliers(const Workspace& workspace, const std::vector<Point>& position
 	if (!(mean_edge_length(positions, workspace.mesh.faces) > 0))
 		return {std::vector<std::uint8_t>(positions.size(), 0), positions, 0};
 	return Repair(workspace, positions).run(noise);
+}
+
+OutlierRepair repair_outliers(const Workspace& workspace, const NoiseLevels& levels)
+{
+	const double noise = levels.ordinary;
+	const bool may_be_detail = levels.flat < WHITE * noise;
+	if (noise < LEAST_NOISE || (levels.median_ratio > NO_OUTLIERS && !may_be_detail))
+		return {};
+	const std::vector<Point>& measured = workspace.mesh.positions;
+	const Outliers outliers =
+		put_back_outliers(workspace, measured, levels.flat < DETAILED * noise ? 0 : noise);
+	if (outliers.count == 0)
+		return {};
+	const NoiseLevels after = estimate_noise_levels(workspace, outliers.positions);
+	// What is left without them is noise of all vertices, and detail.
+	const double removed = noise * noise - after.ordinary * after.ordinary;
+	const double level = std::sqrt(std::max(0.0, removed + after.flat * after.flat));
+	if (level < LEAST_NOISE)
+		return {};
+	const double share = way_between(UNEXPLAINED, EXPLAINED, after.flat / level);
+	if (share == 0)
+		return {};
+	const double found = static_cast<double>(outliers.count) / workspace.mesh.vertex_count();
+	OutlierRepair result = {share, level, after.flat, found, measured};
+	for (std::size_t i = 0; i < measured.size(); ++i) {
+		if (outliers.flags[i] != 0)
+			result.positions[i] += share * (outliers.positions[i] - measured[i]);
+	}
+	return result;
 }
 
 } // namespace orthopoly

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "noise_level.h"
 #include "workspace.h"
 
 #include <cstdint>
@@ -33,5 +34,26 @@ struct Outliers {
 /// O(#V) time; the same bits on any number of threads. Throws Cancelled.
 Outliers
 put_back_outliers(const Workspace& workspace, const std::vector<Point>& positions, double noise);
+
+/// What outliers make of a mesh's noise. Levels are in mean edge lengths.
+struct OutlierRepair {
+	/// How far they explain it, 0 to 1.
+	double share = 0;
+	/// Its level then: that of all vertices, without the detail of the surface.
+	double level = 0;
+	/// The level that is left without the outliers.
+	double left = 0;
+	/// The share of the vertices that are some.
+	double found = 0;
+	/// #V positions with the outliers put back, as far as they explain the noise; empty where they
+	/// do not.
+	std::vector<Point> positions;
+};
+
+/// Puts back the outliers of the workspace's mesh, as far as the noise is less without them.
+///
+/// @param levels those of the mesh
+/// The same bits on any number of threads. Throws Cancelled.
+OutlierRepair repair_outliers(const Workspace& workspace, const NoiseLevels& levels);
 
 } // namespace orthopoly

@@ -242,6 +242,22 @@ TEST_CASE("Strict selection drops curvature that is noise", "[height_filter]")
 	CHECK(angle(9) < 0.7 * angle(0));
 }
 
+TEST_CASE("A looser structure of heights is taken where the surface bends", "[height_filter]")
+{
+	const TriangleMesh clean = make_sphere(600);
+	const FaceGeometry truth = face_geometry(clean.positions, clean.faces);
+	const StepFixture f(noisy(clean, 0.15));
+	const auto angle = [&](double loosening) {
+		HeightFilterOptions options = options_of(0.15 * f.workspace.mean_edge_length, 1, 5);
+		options.loosening = loosening;
+		return mean_angle(
+			filtered_normals(
+				f.workspace, {truth.normals, truth.centroids, f.mesh.positions}, options),
+			[&](std::size_t i) { return truth.normals[i]; });
+	};
+	CHECK(angle(0.15) < 0.95 * angle(0));
+}
+
 TEST_CASE("Normals from heights turn and grow with the mesh", "[height_filter]")
 {
 	const TriangleMesh clean = make_part(4000);
@@ -299,6 +315,7 @@ TEST_CASE("Wide lanes give the same bits for heights", "[height_filter]")
 	const FaceGeometry clean = face_geometry(make_part(4000).positions, f.mesh.faces);
 	for (const int rings : {2, 7}) {
 		HeightFilterOptions options = options_of(0.15 * f.workspace.mean_edge_length, 1, rings);
+		options.loosening = 0.15;
 		const auto found = [&](bool wide) {
 			options.wide_lanes = wide;
 			return filtered_normals(

@@ -175,6 +175,58 @@ TEST_CASE("A bend beyond the threshold is kept, one within is taken along", "[no
 	CHECK(largest_change(std::cos(42 * DEGREE)) > 2);
 }
 
+TEST_CASE(
+	"A looser structure is taken where the surface bends, and not across an edge",
+	"[normal_filter]")
+{
+	NormalFilterOptions strict = rings(3, 3);
+	strict.cos_threshold = std::cos(12 * DEGREE);
+	NormalFilterOptions loose = strict;
+	loose.loosening = strict.cos_threshold - std::cos(50 * DEGREE);
+	const auto angle = [](const StepFixture& f, const NormalFilterOptions& options) {
+		NormalField field = field_of(f.geometry);
+		field.data = scattered(field.data, 8);
+		return mean_angle(filter_normals(f.workspace, field, options), [&](std::size_t i) {
+			return f.geometry.normals[i];
+		});
+	};
+	const StepFixture sphere(make_sphere(600));
+	CHECK(angle(sphere, loose) < 0.8 * angle(sphere, strict));
+	TriangleMesh roof = make_flat_grid(24);
+	roof.positions = each(roof.positions, [](const Point& p) {
+		const double x = p.x() - 0.5;
+		return x <= 1e-9 ?
+				   p :
+				   Point(0.5 + x * std::cos(40 * DEGREE), p.y(), -x * std::sin(40 * DEGREE));
+	});
+	const StepFixture edge(roof);
+	CHECK(angle(edge, loose) < 1.1 * angle(edge, strict));
+}
+
+TEST_CASE("Faces that noise scatters more are not taken for features", "[normal_filter]")
+{
+	// Half of the faces scatter five times as much, as small ones do. What stands out of the floor
+	// that the others give is not curvature there.
+	const StepFixture f(make_flat_grid(40));
+	NormalField field = field_of(f.geometry);
+	const std::vector<Point> little = scattered(field.data, 2);
+	const std::vector<Point> much = scattered(field.data, 10);
+	std::vector<double> scatters(field.data.size());
+	for (std::size_t i = 0; i < scatters.size(); ++i) {
+		const bool is_small = field.nodes[i].x() > 0.5;
+		scatters[i] = is_small ? 25 : 1;
+		field.data[i] = is_small ? much[i] : little[i];
+	}
+	const auto angle = [&] {
+		return mean_angle(filter_normals(f.workspace, field, rings(2, 4)), [](std::size_t) {
+			return Point(0, 0, 1);
+		});
+	};
+	const double alike = angle();
+	field.scatters = scatters;
+	CHECK(angle() < 0.9 * alike);
+}
+
 TEST_CASE("Faces without a guide or a weight take no part", "[normal_filter]")
 {
 	const StepFixture f(make_flat_grid(12));
@@ -274,6 +326,7 @@ TEST_CASE("Wide lanes give the same bits for normals", "[normal_filter]")
 	const StepFixture f(noisy(make_part(4000), 0.2));
 	for (const int largest : {2, 6}) {
 		NormalFilterOptions options = rings(2, largest);
+		options.loosening = 0.25;
 		const auto found = [&](bool wide) {
 			options.wide_lanes = wide;
 			return filter_normals(f.workspace, field_of(f.geometry), options);

@@ -87,6 +87,21 @@ TEST_CASE("Pairs add up, and a fraction lies between its neighbours", "[prefilte
 	CHECK(before == 0);
 }
 
+TEST_CASE("Vertices take pairs of their own", "[prefilter]")
+{
+	const StepFixture f(noisy(make_torus(2000), 0.3));
+	std::vector<double> pairs(f.mesh.positions.size(), 2.5);
+	std::vector<Point> positions = f.mesh.positions;
+	taubin_smooth(f.workspace, pairs, positions);
+	CHECK(same_bits(positions, smoothed(f, 2.5)));
+	// Those without any stay, and the others go by them.
+	std::fill(pairs.begin(), pairs.begin() + 500, 0.0);
+	positions = f.mesh.positions;
+	taubin_smooth(f.workspace, pairs, positions);
+	for (std::size_t i = 0; i < positions.size(); ++i)
+		CHECK(same_bits(positions[i], f.mesh.positions[i]) == (i < 500));
+}
+
 TEST_CASE("Smoothing takes noise and leaves the shape", "[prefilter]")
 {
 	// The truth against itself: the pass band keeps the sphere's radius.

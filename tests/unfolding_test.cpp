@@ -257,11 +257,11 @@ TEST_CASE("Faces are turned back the same on any number of threads", "[unfolding
 
 TEST_CASE("The method leaves no more folds than a few on strong noise", "[unfolding][slow]")
 {
-	// Without the steps that unfold, 83 on the open mesh and 46 on the part, 15 without the last.
+	// Over twelve noises, since one has none and another six.
 	const auto count = [](const std::string& name, double sigma, NoiseDirection direction) {
 		const TriangleMesh truth = find_recipe(name).make_default();
 		Index folded = 0;
-		for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+		for (std::uint32_t seed = 1; seed <= 12; ++seed) {
 			NoiseOptions noise;
 			noise.sigma = sigma;
 			noise.direction = direction;
@@ -272,6 +272,6 @@ TEST_CASE("The method leaves no more folds than a few on strong noise", "[unfold
 		}
 		return folded;
 	};
-	CHECK(count("height_field", 0.4, NoiseDirection::Random) <= 8);
-	CHECK(count("part", 0.2, NoiseDirection::Isotropic) <= 7);
+	CHECK(count("height_field", 0.4, NoiseDirection::Random) <= 22);
+	CHECK(count("part", 0.2, NoiseDirection::Isotropic) <= 26);
 }

@@ -27,9 +27,15 @@ namespace {
 constexpr double PREFILTER_FROM = 0.065;
 constexpr double PREFILTER_FULL = 0.095;
 
-// Taubin pairs of the prefilter: a base, and more with the noise, as much as folds ask for.
+// Taubin pairs of the prefilter: a base, and more with the noise over the edges around a vertex, as
+// much as folds ask for. More than the most, and it would reach beyond the structures.
 constexpr double PREFILTER_BASE_PAIRS = 0.5;
 constexpr double PREFILTER_PAIRS_PER_NOISE = 5;
+constexpr double MOST_PREFILTER_PAIRS = 8;
+
+// Noise lengthens edges, and what is left of their mean square without it may be rounding: at least
+// this share is taken for the surface's own.
+constexpr double LEAST_CLEAN_SHARE = 0.05;
 
 // Standard deviations of the noise beyond which the prefilter must be moving a feature, not noise.
 constexpr double PREFILTER_BOUND = 3;
@@ -80,6 +86,11 @@ constexpr double LEAST_INCREMENT = 0.05;
 constexpr double LEAST_INCREMENT_NOISE = 0.1;
 constexpr double LARGEST_INCREMENT = 0.08;
 constexpr double LARGEST_INCREMENT_NOISE = 0.2;
+
+// How much lower the threshold of looser structures is, of normals and of heights. Where a surface
+// only bends, the threshold that edges ask for takes members away from its structures.
+constexpr double LOOSENING = 0.25;
+constexpr double HEIGHT_LOOSENING = 0.15;
 
 // Energy over noise variance from which a coefficient is kept: three standard deviations.
 constexpr double SELECTION = 9;
@@ -156,6 +167,15 @@ Rings rings_for(double noise)
 	return noise < 0.35 ? Rings {3, 4} : Rings {3, 5};
 }
 
+// Taubin pairs of the prefilter for white noise, here in the edge lengths around a vertex.
+double prefilter_pairs_for(double noise)
+{
+	return std::min(
+		MOST_PREFILTER_PAIRS,
+		way_between(PREFILTER_FROM, PREFILTER_FULL, noise) *
+			(PREFILTER_BASE_PAIRS + PREFILTER_PAIRS_PER_NOISE * noise));
+}
+
 // How much of its way the first of two iterations goes.
 double guiding_for(double noise)
 {
@@ -175,7 +195,8 @@ struct Plan {
 	double correlation = 0;
 	/// In mean edge lengths, strength included.
 	double noise = 0;
-	double prefilter_pairs = 0;
+	/// Taubin pairs of the prefilter where noise is correlated.
+	double scanner_pairs = SCANNER_PAIRS;
 	int iterations = ITERATIONS;
 	/// How much of their way the iterations before the last go, 0 to 1.
 	double guiding = 1;
@@ -215,10 +236,7 @@ Plan plan_for(const DenoiseOptions& options, double noise, double correlation)
 	Plan plan;
 	plan.noise = noise;
 	plan.correlation = correlation;
-	const double white_pairs = way_between(PREFILTER_FROM, PREFILTER_FULL, noise) *
-							   (PREFILTER_BASE_PAIRS + PREFILTER_PAIRS_PER_NOISE * noise);
-	plan.prefilter_pairs =
-		between(white_pairs, SCANNER_PAIRS * strength_factor(options.strength), correlation);
+	plan.scanner_pairs *= strength_factor(options.strength);
 	plan.vertex_iterations = between(VERTEX_ITERATIONS, SCANNER_VERTEX_ITERATIONS, correlation);
 	plan.cos_threshold = between(cos_threshold_for(noise), SCANNER_THRESHOLD, correlation);
 	plan.cos_threshold_increment =
@@ -260,11 +278,33 @@ void record(const Plan& plan, DenoiseOptions& resolved)
 	resolved.cos_threshold_increment = plan.cos_threshold_increment;
 }
 
+// How much the noise of the corners scatters the normal of each face: #F.
+//
+// Independent noise at the corners tilts a triangle by a mean square of sigma^2 times the sum of
+// its squared edges over four times its squared area; turned so far that it could be anywhere, it
+// tells no more.
+std::vector<double>
+scatters_by(double sigma, const Workspace& workspace, const std::vector<Point>& positions)
+{
+	std::vector<double> scatters(workspace.mesh.faces.size());
+	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
+		const Face& face = workspace.mesh.faces[i];
+		const double tilt = sigma * sigma * edge_squares(positions, face);
+		const double total = tilt + face_cross_product(positions, face).squaredNorm();
+		scatters[i] = total > 0 ? tilt / total : 1;
+	});
+	return scatters;
+}
+
 // The normals to fit: the prefiltered original's, blended with the current ones by area.
-NormalField
-normal_field(const FaceGeometry& original, const FaceGeometry& current, Execution& execution)
+NormalField normal_field(
+	const FaceGeometry& original,
+	const FaceGeometry& current,
+	const std::vector<double>& scatters,
+	Execution& execution)
 {
 	NormalField field;
+	field.scatters = scatters;
 	field.guides = current.normals;
 	field.nodes = current.centroids;
 	field.data.resize(current.normals.size());
@@ -294,10 +334,12 @@ public:
 		sigma_ = plan_.noise * mean_edge_length(workspace_, positions_);
 		const std::vector<Point> start = positions_;
 		const FaceGeometry original = face_geometry(workspace_, positions_);
+		const std::vector<double> scatters = scatters_by(sigma_, workspace_, start);
 		for (int iteration = 0; iteration < plan_.iterations; ++iteration) {
 			const bool last = iteration + 1 == plan_.iterations;
 			const FaceGeometry current = face_geometry(workspace_, positions_);
-			std::vector<Point> normals = filter(original, current, iteration);
+			std::vector<Point> normals =
+				filter(normal_field(original, current, scatters, workspace_.execution), iteration);
 			std::vector<double> paces;
 			if (last && plan_.correlation < 1)
 				paces = refine(current, normals);
@@ -368,7 +410,7 @@ private:
 	{
 		const std::vector<Point>& measured = workspace_.mesh.positions;
 		workspace_.execution.begin_phase(0.1, 0.15, "unfolding faces");
-		taubin_smooth(workspace_, plan_.prefilter_pairs, positions_);
+		taubin_smooth(workspace_, prefilter_pairs(), positions_);
 		if (plan_.correlation == 1)
 			return;
 		bound_drift(measured, PREFILTER_BOUND * sigma_);
@@ -380,8 +422,25 @@ private:
 		bound_drift(measured, UNFOLDING_BOUND * sigma_);
 	}
 
-	std::vector<Point>
-	filter(const FaceGeometry& original, const FaceGeometry& current, int iteration) const
+	// Taubin pairs of each vertex: small triangles scatter more, and fold before large ones do.
+	// None takes fewer than the mean edge asks for, since outliers make long edges too.
+	std::vector<double> prefilter_pairs() const
+	{
+		std::vector<double> pairs(positions_.size());
+		const double variance = sigma_ * sigma_;
+		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
+			const double square =
+				mean_edge_square_around(workspace_, positions_, static_cast<Index>(i));
+			// The noise of both ends is in an edge.
+			const double clean = std::max(square - 2 * variance, LEAST_CLEAN_SHARE * square);
+			const double local = clean > 0 ? sigma_ / std::sqrt(clean) : 0.0;
+			const double white = prefilter_pairs_for(std::max(plan_.noise, local));
+			pairs[i] = between(white, plan_.scanner_pairs, plan_.correlation);
+		});
+		return pairs;
+	}
+
+	std::vector<Point> filter(const NormalField& field, int iteration) const
 	{
 		begin_phase(iteration, 0.0, 0.5, "fitting normals");
 		NormalFilterOptions options;
@@ -390,11 +449,11 @@ private:
 			std::min(1.0, plan_.cos_threshold + guided * plan_.cos_threshold_increment);
 		options.smallest_ring = plan_.rings.smallest;
 		options.largest_ring = plan_.rings.largest;
+		options.loosening = LOOSENING;
 		options.selection = plan_.selection;
 		if (plan_.noise >= WIDE_STRUCTURES_NOISE)
 			options.faces_per_structure = FACES_PER_WIDE_STRUCTURE;
-		return filter_normals(
-			workspace_, normal_field(original, current, workspace_.execution), options);
+		return filter_normals(workspace_, field, options);
 	}
 
 	// Takes the normals from the measured heights instead, as far as these agree. Returns the paces
@@ -408,6 +467,7 @@ private:
 			options.faces_per_structure = FACES_PER_HEIGHT_STRUCTURE;
 		}
 		options.largest_ring = plan_.height_rings;
+		options.loosening = HEIGHT_LOOSENING;
 		options.sigma = sigma_;
 		options.selection = HEIGHT_SELECTION;
 		const HeightNormals refined = normals_from_heights(

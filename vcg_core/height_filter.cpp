@@ -33,6 +33,10 @@ constexpr double BIAS_SHARE = 12;
 // What the noise may be above its estimate before the residual counts as unexplained.
 constexpr double MARGIN = 1.25;
 
+// What the risk of a looser structure counts: what it has of another side of an edge shows in the
+// heights less than it does harm.
+constexpr double LOOSE_RISK = 1.2;
+
 // Past this many times the least risk so far, growing further has not paid.
 constexpr double HOPELESS = 3;
 
@@ -89,8 +93,30 @@ using Vote = Eigen::Vector4d;
 struct Polynomial {
 	ScatteredFit<3, 1>::Coefficients coefficients;
 	double weight = 0;
+	double risk = std::numeric_limits<double>::infinity();
 	/// 0: there is none.
 	int rings = 0;
+};
+
+/// The similar faces around a face, and their vertices laid out for a fit.
+template<class Lanes>
+struct Structure {
+	explicit Structure(int largest_ring) :
+			member_ends(at(largest_ring) + 1), vertex_counts(member_ends.size()),
+			vertex_group_ends(member_ends.size())
+	{
+	}
+
+	std::vector<Index> members;
+	/// Members within each number of rings.
+	std::vector<std::size_t> member_ends;
+	std::vector<Index> vertices;
+	std::vector<VertexGroup<Lanes>> groups;
+	/// Vertices of the members within each number of rings, and groups of them.
+	std::vector<int> vertex_counts;
+	std::vector<std::size_t> vertex_group_ends;
+	Point tangent = Point::Zero();
+	Point bitangent = Point::Zero();
 };
 
 /// Builds the structures of one patch after another, fits them and lets them vote.
@@ -108,9 +134,8 @@ public:
 			workspace_(workspace),
 			field_(field), options_(options), chosen_(chosen),
 			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring)),
-			variance_(options.sigma * scale_ * options.sigma * scale_),
-			member_ends_(at(options.largest_ring) + 1), vertex_counts_(member_ends_.size()),
-			vertex_group_ends_(member_ends_.size())
+			variance_(options.sigma * scale_ * options.sigma * scale_), best_(options.largest_ring),
+			tried_(options.largest_ring)
 	{
 		for (const int size : SIZES) {
 			if (size >= options.smallest_ring && size < options.largest_ring)
@@ -140,43 +165,54 @@ public:
 			positions_.push_back(field_.positions[at(i)]);
 		// The same for groups of vertices.
 		positions_.emplace_back(Point::Zero());
-		stamps_.assign(positions_.size(), -1);
+		stamps_.assign(positions_.size(), 0);
+		stamp_ = 0;
 	}
 
 	void vote(Index i, std::vector<Vote>& sums)
 	{
 		if (guides_[at(i)].isZero(0) || chosen_[at(patch_.mesh_faces()[at(i)])] == 0)
 			return;
-		find_members(i);
-		choose_axes(i);
-		find_vertices(i);
-		lay_out(i);
-		const Polynomial best = fit();
+		Polynomial best;
+		for (const double loosening : {0.0, options_.loosening}) {
+			find_members(i, options_.cos_threshold - loosening);
+			// The same members fit as they did.
+			if (loosening > 0 && tried_.member_ends == best_.member_ends)
+				break;
+			choose_axes(i);
+			find_vertices();
+			lay_out(i);
+			const Polynomial tried = fit();
+			if (loosening == 0 || LOOSE_RISK * tried.risk < best.risk) {
+				best = tried;
+				std::swap(tried_, best_);
+			}
+			if (!(options_.loosening > 0))
+				break;
+		}
 		if (best.rings > 0)
 			add_votes(i, best, sums);
 	}
 
 private:
-	std::size_t members_within(int ring) const { return member_ends_[at(ring)]; }
-
 	// The similar faces around a face.
-	void find_members(Index i)
+	void find_members(Index i, double cos_threshold)
 	{
 		patch_.collect(i, options_.largest_ring);
 		const Point guide = guides_[at(i)];
 		const IndexSpan faces = patch_.collected();
 		const Point* const guides = guides_.data();
-		members_.resize(faces.size() + LANES);
-		Index* const members = members_.data();
+		tried_.members.resize(faces.size() + LANES);
+		Index* const members = tried_.members.data();
 		std::size_t end = 0;
 		std::size_t k = 0;
 		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
 			for (; k < patch_.count_within(ring); ++k) {
 				const Index j = faces[k];
 				members[end] = j;
-				end += static_cast<std::size_t>(guide.dot(guides[j]) > options_.cos_threshold);
+				end += static_cast<std::size_t>(guide.dot(guides[j]) > cos_threshold);
 			}
-			member_ends_[at(ring)] = end;
+			tried_.member_ends[at(ring)] = end;
 		}
 	}
 
@@ -184,22 +220,22 @@ private:
 	void choose_axes(Index i)
 	{
 		TangentFrame frame(guides_[at(i)]);
-		const std::size_t end = members_within(std::min(RINGS_FOR_AXES, options_.largest_ring));
-		for (std::size_t k = 0; k < end; ++k)
-			frame.observe(guides_[at(members_[k])], 1.0);
+		const int rings = std::min(RINGS_FOR_AXES, options_.largest_ring);
+		for (std::size_t k = 0; k < tried_.member_ends[at(rings)]; ++k)
+			frame.observe(guides_[at(tried_.members[k])], 1.0);
 		frame.align();
-		tangent_ = frame.tangent();
-		bitangent_ = frame.bitangent();
+		tried_.tangent = frame.tangent();
+		tried_.bitangent = frame.bitangent();
 	}
 
 	// The vertices of the members, each ring filled up to whole groups.
-	void find_vertices(Index i)
+	void find_vertices()
 	{
 		const int largest = options_.largest_ring;
-		if (members_within(largest) == patch_.count_within(largest))
+		if (tried_.member_ends[at(largest)] == patch_.count_within(largest))
 			take_all_vertices();
 		else
-			take_vertices_of_members(i);
+			take_vertices_of_members();
 	}
 
 	// Where all faces are members, they have been met already.
@@ -207,59 +243,62 @@ private:
 	{
 		const IndexSpan met = patch_.collect_vertices();
 		const auto nobody = static_cast<Index>(positions_.size()) - 1;
-		vertices_.clear();
+		std::vector<Index>& vertices = tried_.vertices;
+		vertices.clear();
 		std::size_t begin = 0;
 		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
 			const std::size_t end = patch_.vertex_count_within(ring);
-			vertices_.insert(vertices_.end(), met.begin() + begin, met.begin() + end);
+			vertices.insert(vertices.end(), met.begin() + begin, met.begin() + end);
 			begin = end;
-			vertex_counts_[at(ring)] = static_cast<int>(end);
-			while (vertices_.size() % LANES != 0)
-				vertices_.push_back(nobody);
-			vertex_group_ends_[at(ring)] = vertices_.size() / LANES;
+			tried_.vertex_counts[at(ring)] = static_cast<int>(end);
+			while (vertices.size() % LANES != 0)
+				vertices.push_back(nobody);
+			tried_.vertex_group_ends[at(ring)] = vertices.size() / LANES;
 		}
 	}
 
-	void take_vertices_of_members(Index i)
+	void take_vertices_of_members()
 	{
-		vertices_.resize(3 * members_.size() + vertex_group_ends_.size() * LANES);
+		tried_.vertices.resize(3 * tried_.members.size() + tried_.vertex_group_ends.size() * LANES);
 		const auto nobody = static_cast<Index>(positions_.size()) - 1;
 		Index* const stamps = stamps_.data();
-		Index* const vertices = vertices_.data();
+		Index* const vertices = tried_.vertices.data();
+		const Index* const members = tried_.members.data();
+		const Index stamp = ++stamp_;
 		const Face* const faces = patch_.faces().data();
 		std::size_t end = 0;
 		std::size_t k = 0;
 		int count = 0;
 		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
 			const std::size_t begin = end;
-			for (; k < members_within(ring); ++k) {
-				for (const Index vertex : faces[members_[k]]) {
+			for (; k < tried_.member_ends[at(ring)]; ++k) {
+				for (const Index vertex : faces[members[k]]) {
 					vertices[end] = vertex;
-					end += static_cast<std::size_t>(stamps[vertex] != i);
-					stamps[vertex] = i;
+					end += static_cast<std::size_t>(stamps[vertex] != stamp);
+					stamps[vertex] = stamp;
 				}
 			}
 			count += static_cast<int>(end - begin);
-			vertex_counts_[at(ring)] = count;
+			tried_.vertex_counts[at(ring)] = count;
 			while (end % LANES != 0)
-				vertices_[end++] = nobody;
-			vertex_group_ends_[at(ring)] = end / LANES;
+				vertices[end++] = nobody;
+			tried_.vertex_group_ends[at(ring)] = end / LANES;
 		}
-		vertices_.resize(end);
+		tried_.vertices.resize(end);
 	}
 
 	void lay_out(Index i)
 	{
 		const Point center = places_[at(i)];
-		const Point tangent = scale_ * tangent_;
-		const Point bitangent = scale_ * bitangent_;
+		const Point tangent = scale_ * tried_.tangent;
+		const Point bitangent = scale_ * tried_.bitangent;
 		const Point guide = scale_ * guides_[at(i)];
 		const auto nobody = static_cast<Index>(positions_.size()) - 1;
-		groups_.resize(vertices_.size() / LANES);
-		for (std::size_t k = 0; k < groups_.size(); ++k) {
-			const Index* const vertices = vertices_.data() + LANES * k;
+		tried_.groups.resize(tried_.vertices.size() / LANES);
+		for (std::size_t k = 0; k < tried_.groups.size(); ++k) {
+			const Index* const vertices = tried_.vertices.data() + LANES * k;
 			const std::array<Lanes, 3> offset = offsets<Lanes>(positions_, vertices, center);
-			VertexGroup<Lanes>& group = groups_[k];
+			VertexGroup<Lanes>& group = tried_.groups[k];
 			group.x = dot(offset, tangent);
 			group.y = dot(offset, bitangent);
 			group.height = dot(offset, guide);
@@ -270,7 +309,8 @@ private:
 		}
 	}
 
-	Polynomial fit()
+	// Fits the structure that is tried.
+	Polynomial fit() const
 	{
 		Polynomial best;
 		Choice choice;
@@ -280,11 +320,11 @@ private:
 			const std::size_t end = std::min(first + LANES, sizes_.size());
 			std::array<ScatteredMoments<3, 1>, LANES> of_sizes;
 			for (std::size_t k = first; k < end; ++k) {
-				for (; group < vertex_group_ends_[at(sizes_[k])]; ++group) {
-					const VertexGroup<Lanes>& vertices = groups_[group];
+				for (; group < tried_.vertex_group_ends[at(sizes_[k])]; ++group) {
+					const VertexGroup<Lanes>& vertices = tried_.groups[group];
 					sums.add(vertices.x, vertices.y, {vertices.height}, vertices.weight);
 				}
-				add_up(sums, vertex_counts_[at(sizes_[k])], of_sizes[k - first]);
+				add_up(sums, tried_.vertex_counts[at(sizes_[k])], of_sizes[k - first]);
 			}
 			const Fit fitted(side_by_side<Lanes>(of_sizes));
 			const Slopes slopes(fitted);
@@ -296,6 +336,7 @@ private:
 				best = {
 					fitted.polynomial(choice.kept, choice.terms, choice.lane),
 					1 / (choice.least_risk + LEAST_VARIANCE),
+					choice.least_risk,
 					choice.rings};
 			if (!goes_on)
 				break;
@@ -357,8 +398,8 @@ private:
 				residual += fitted.energy(term, lane);
 			}
 		}
-		const double risk =
-			slope_variance + BIAS_SHARE * excess(moments, free > 0 ? residual / free : variance_);
+		const double unexplained = excess(moments, free > 0 ? residual / free : variance_);
+		const double risk = slope_variance + BIAS_SHARE * unexplained;
 		if (risk < choice.least_risk)
 			choice = {risk, kept, terms, lane, ring};
 		return risk <= HOPELESS * choice.least_risk;
@@ -377,28 +418,30 @@ private:
 	{
 		const Point center = places_[at(i)];
 		const Point guide = guides_[at(i)];
-		const Point tangent = scale_ * tangent_;
-		const Point bitangent = scale_ * bitangent_;
+		const Point tangent = scale_ * best_.tangent;
+		const Point bitangent = scale_ * best_.bitangent;
 		std::array<Lanes, Fit::TERMS> c;
 		for (std::size_t term = 0; term < Fit::TERMS; ++term)
 			c[term] = Lanes(polynomial.coefficients[term][0]);
 		std::array<std::array<Lanes, 3>, 3> axes;
 		for (std::size_t axis = 0; axis < 3; ++axis) {
-			const Point& direction = axis == 0 ? guide : axis == 1 ? tangent_ : bitangent_;
+			const Point& direction = axis == 0 ? guide :
+									 axis == 1 ? best_.tangent :
+												 best_.bitangent;
 			for (int component = 0; component < 3; ++component)
 				axes[axis][at(component)] = Lanes(direction[component]);
 		}
 		const Lanes two(2);
 		const Lanes three(3);
-		const std::size_t end = members_within(polynomial.rings);
+		const std::size_t end = best_.member_ends[at(polynomial.rings)];
 		// Whoever fills up the last group.
 		std::fill_n(
-			members_.begin() + static_cast<std::ptrdiff_t>(end),
+			best_.members.begin() + static_cast<std::ptrdiff_t>(end),
 			LANES,
 			static_cast<Index>(guides_.size()) - 1);
 		for (std::size_t k = 0; k < end; k += LANES) {
 			const std::array<Lanes, 3> offset =
-				offsets<Lanes>(places_, members_.data() + k, center);
+				offsets<Lanes>(places_, best_.members.data() + k, center);
 			const Lanes x = dot(offset, tangent);
 			const Lanes y = dot(offset, bitangent);
 			const Lanes slope_x =
@@ -413,7 +456,7 @@ private:
 				vote[component] = factor * (axes[0][component] - slope_x * axes[1][component] -
 											slope_y * axes[2][component]);
 			for (std::size_t lane = 0; lane < LANES; ++lane)
-				sums[at(members_[k + lane])] +=
+				sums[at(best_.members[k + lane])] +=
 					Vote(vote[0][lane], vote[1][lane], vote[2][lane], polynomial.weight);
 		}
 	}
@@ -431,20 +474,12 @@ private:
 	std::vector<Point> guides_;
 	std::vector<Point> places_;
 	std::vector<Point> positions_;
-	/// The face each vertex was last gathered for.
+	/// The structure each vertex was last gathered for, by a number of its own.
 	std::vector<Index> stamps_;
-
-	// Of the structure at hand:
-	std::vector<Index> members_;
-	/// Members within each number of rings.
-	std::vector<std::size_t> member_ends_;
-	std::vector<Index> vertices_;
-	std::vector<VertexGroup<Lanes>> groups_;
-	/// Vertices of the members within each number of rings, and groups of them.
-	std::vector<int> vertex_counts_;
-	std::vector<std::size_t> vertex_group_ends_;
-	Point tangent_;
-	Point bitangent_;
+	Index stamp_ = 0;
+	/// The structure with the least risk, and the one that is tried.
+	Structure<Lanes> best_;
+	Structure<Lanes> tried_;
 };
 
 /// The same on a processor with wide lanes.

@@ -22,6 +22,9 @@ struct HeightField {
 struct HeightFilterOptions {
 	/// Faces are similar where the cosine of their guide directions is above this.
 	double cos_threshold = 0.9;
+	/// Where positive, a structure of the faces above a threshold lower by this is fitted too, and
+	/// taken where its risk is clearly less.
+	double loosening = 0;
 	/// A structure reaches over this many rings of faces to that many; each face takes the number
 	/// with the least risk, of a few that grow like powers.
 	int smallest_ring = 1;

@@ -39,6 +39,10 @@ constexpr int MEMBERS_FOR_LINEAR = 6;
 // of it falls on the centre is not known; a quarter did best on smooth and on sharp models alike.
 constexpr double BIAS_SHARE = 0.25;
 
+// What the risk of a looser structure counts: a strict one has its members chosen by how they
+// agree, so that they seem to scatter less than they do.
+constexpr double LOOSE_RISK = 0.9;
+
 // Past this many times the least risk so far, growing further has not paid.
 constexpr double HOPELESS = 3;
 
@@ -67,6 +71,7 @@ std::size_t degree_for(int members)
 struct Polynomial {
 	FitOf<double>::Coefficients coefficients;
 	double weight = 0;
+	double risk = std::numeric_limits<double>::infinity();
 	/// 0: there is none.
 	int rings = 0;
 };
@@ -77,9 +82,34 @@ struct Observation {
 	double weight = 0;
 	Point data = Point::Zero();
 	Point node = Point::Zero();
+	double scatter = 0;
 };
 
-/// Builds the structures of one patch after another.
+/// The similar faces around a face, laid out for a fit.
+template<class Lanes>
+struct Structure {
+	/// Members side by side.
+	struct Group {
+		Lanes x;
+		Lanes y;
+		std::array<Lanes, 3> data;
+		Lanes weight;
+		/// Times the weight.
+		Lanes scatter;
+	};
+
+	/// Faces of the patch, each ring filled up to whole groups.
+	std::vector<Index> members;
+	std::vector<Group> groups;
+	/// Members within each number of rings, and groups of them.
+	std::array<int, RINGS> counts = {};
+	std::array<std::size_t, RINGS> group_ends = {};
+	/// Mean variance of the data within each number of rings that was fitted, by noise alone and up
+	/// to the common factor.
+	std::array<double, RINGS> scatters = {};
+};
+
+/// Builds and fits the structures of one patch after another.
 template<class Lanes>
 class Structures {
 public:
@@ -107,71 +137,120 @@ public:
 				{field_.guides[at(i)],
 				 field_.weights[at(i)],
 				 field_.data[at(i)],
-				 field_.nodes[at(i)]});
+				 field_.nodes[at(i)],
+				 field_.scatters.empty() ? 1.0 : field_.scatters[at(i)]});
 		// Fills up groups of members.
 		observations_.emplace_back();
+	}
+
+	/// Whether a face has a direction to choose members by.
+	bool is_guided(Index i) const { return !observations_[at(i)].guide.isZero(0); }
+
+	/// The members of the structure of a face.
+	void find_members(Index i, double cos_threshold, Structure<Lanes>& structure)
+	{
+		patch_.collect(i, options_.largest_ring);
+		const Observation* const observations = observations_.data();
+		const Point guide = observations[i].guide;
+		const auto nobody = static_cast<Index>(observations_.size()) - 1;
+		structure.members.resize(patch_.collected().size() + RINGS * LANES);
+		Index* const members = structure.members.data();
+		const IndexSpan faces = patch_.collected();
+		std::size_t end = 0;
+		std::size_t k = 0;
+		int count = 0;
+		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
+			const std::size_t begin = end;
+			for (; k < patch_.count_within(ring); ++k) {
+				const Index j = faces[k];
+				const Observation& other = observations[j];
+				// Bits and no branches: half of them would be guessed wrong.
+				const bool is_similar = guide.dot(other.guide) > cos_threshold;
+				const bool has_weight = other.weight > 0;
+				const bool is_on_this_side = guide.dot(other.data) > 0;
+				members[end] = j;
+				end += static_cast<std::size_t>(is_similar & has_weight & is_on_this_side);
+			}
+			count += static_cast<int>(end - begin);
+			structure.counts[at(ring)] = count;
+			while (end % LANES != 0)
+				members[end++] = nobody;
+			structure.group_ends[at(ring)] = end / LANES;
+		}
+		structure.members.resize(end);
 	}
 
 	/// Calls visit(fit, ring, end) for the structures of `ring` rings, in lane 0, to less than
 	/// `end`, smallest ones first, until it returns false.
 	template<class Visit>
-	void for_each_fit(Index i, Visit visit)
+	void for_each_fit(Index i, Structure<Lanes>& structure, Visit visit) const
 	{
-		if (observations_[at(i)].guide.isZero(0))
-			return;
-		find_members(i);
-		choose_axes(i);
-		lay_out(i);
+		lay_out(i, structure);
 		typename Fit::Moments sums;
+		Lanes scatter(0);
 		std::size_t group = 0;
+		const auto add_ring = [&](int ring) {
+			for (; group < structure.group_ends[at(ring)]; ++group) {
+				const typename Structure<Lanes>::Group& members = structure.groups[group];
+				sums.add(members.x, members.y, members.data, members.weight);
+				scatter += members.scatter;
+			}
+		};
 		for (int ring = 0; ring < options_.smallest_ring; ++ring)
-			add_ring(ring, group, sums);
+			add_ring(ring);
 		for (int ring = options_.smallest_ring; ring <= options_.largest_ring;
 			 ring += RINGS_AT_ONCE) {
 			const int end = std::min(ring + RINGS_AT_ONCE, options_.largest_ring + 1);
 			std::array<ScatteredMoments<2, 3>, LANES> of_sizes;
 			for (int size = ring; size < end; ++size) {
-				add_ring(size, group, sums);
-				add_up(sums, counts_[at(size)], of_sizes[at(size - ring)]);
+				add_ring(size);
+				ScatteredMoments<2, 3>& moments = of_sizes[at(size - ring)];
+				add_up(sums, structure.counts[at(size)], moments);
+				structure.scatters[at(size)] =
+					moments.weight() > 0 ? sum_of_lanes(scatter) / moments.weight() : 1;
 			}
 			if (!visit(Fit(side_by_side<Lanes>(of_sizes)), ring, end))
 				return;
 		}
 	}
 
-	/// Residual variances of the structures of a face; negative where there is none.
+	/// Residual variances of the structures of a face, over those that noise alone makes;
+	/// negative where there is none.
 	Variances residual_variances(Index i)
 	{
 		Variances variances;
 		variances.fill(-1);
-		for_each_fit(i, [&](const Fit& fitted, int ring, int end) {
+		if (!is_guided(i))
+			return variances;
+		find_members(i, options_.cos_threshold, sampled_);
+		for_each_fit(i, sampled_, [&](const Fit& fitted, int ring, int end) {
 			for (int size = ring; size < end; ++size) {
 				const std::size_t lane = at(size - ring);
-				const std::size_t terms = fitted.terms(degree_for(members(size)), lane);
-				const int free = members(size) - static_cast<int>(terms);
+				const int members = sampled_.counts[at(size)];
+				const std::size_t terms = fitted.terms(degree_for(members), lane);
+				const int free = members - static_cast<int>(terms);
 				if (free > 0)
-					variances[at(size)] = fitted.residual(terms, lane) / free;
+					variances[at(size)] =
+						fitted.residual(terms, lane) / free / sampled_.scatters[at(size)];
 			}
 			return true;
 		});
 		return variances;
 	}
 
-	/// Members within a number of rings of the structure visited last.
-	int members(int ring) const { return counts_[at(ring)]; }
-
-	/// Adds the votes of a polynomial for the members of the structure visited last.
-	void add_votes(const Polynomial& polynomial, std::vector<Point>& sums) const
+	/// Adds the votes of a polynomial for the members of its structure.
+	static void add_votes(
+		const Structure<Lanes>& structure, const Polynomial& polynomial, std::vector<Point>& sums)
 	{
 		std::array<std::array<Lanes, 3>, Fit::TERMS> coefficients;
 		for (std::size_t term = 0; term < Fit::TERMS; ++term) {
 			for (std::size_t c = 0; c < 3; ++c)
 				coefficients[term][c] = Lanes(polynomial.coefficients[term][c]);
 		}
-		const std::size_t end = group_ends_[at(polynomial.rings)];
+		const std::size_t end = structure.group_ends[at(polynomial.rings)];
 		for (std::size_t group = 0; group < end; ++group) {
 			const std::array<Lanes, Fit::TERMS> terms =
-				monomials<2>(groups_[group].x, groups_[group].y);
+				monomials<2>(structure.groups[group].x, structure.groups[group].y);
 			std::array<Lanes, 3> vote = coefficients[0];
 			for (std::size_t term = 1; term < Fit::TERMS; ++term) {
 				for (std::size_t c = 0; c < 3; ++c)
@@ -183,74 +262,34 @@ public:
 			for (std::size_t c = 0; c < 3; ++c)
 				vote[c] *= factor;
 			for (std::size_t lane = 0; lane < LANES; ++lane)
-				sums[at(members_[LANES * group + lane])] +=
+				sums[at(structure.members[LANES * group + lane])] +=
 					Point(vote[0][lane], vote[1][lane], vote[2][lane]);
 		}
 	}
 
 private:
-	/// Members side by side.
-	struct Group {
-		Lanes x;
-		Lanes y;
-		std::array<Lanes, 3> data;
-		Lanes weight;
-	};
-
-	// The members of a structure, each ring filled up to whole groups.
-	void find_members(Index i)
-	{
-		patch_.collect(i, options_.largest_ring);
-		const Observation* const observations = observations_.data();
-		const Point guide = observations[i].guide;
-		const auto nobody = static_cast<Index>(observations_.size()) - 1;
-		members_.resize(patch_.collected().size() + RINGS * LANES);
-		Index* const members = members_.data();
-		const IndexSpan faces = patch_.collected();
-		std::size_t end = 0;
-		std::size_t k = 0;
-		int count = 0;
-		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
-			const std::size_t begin = end;
-			for (; k < patch_.count_within(ring); ++k) {
-				const Index j = faces[k];
-				const Observation& other = observations[j];
-				// Bits and no branches: half of them would be guessed wrong.
-				const bool is_similar = guide.dot(other.guide) > options_.cos_threshold;
-				const bool has_weight = other.weight > 0;
-				const bool is_on_this_side = guide.dot(other.data) > 0;
-				members[end] = j;
-				end += static_cast<std::size_t>(is_similar & has_weight & is_on_this_side);
-			}
-			count += static_cast<int>(end - begin);
-			counts_[at(ring)] = count;
-			while (end % LANES != 0)
-				members_[end++] = nobody;
-			group_ends_[at(ring)] = end / LANES;
-		}
-		members_.resize(end);
-	}
-
 	// Axes across the guide, turned to where the data around it change most.
-	void choose_axes(Index i)
+	TangentFrame axes_of(Index i, const Structure<Lanes>& structure) const
 	{
 		TangentFrame frame(observations_[at(i)].guide);
-		const std::size_t end = LANES * group_ends_[at(options_.smallest_ring)];
+		const std::size_t end = LANES * structure.group_ends[at(options_.smallest_ring)];
 		for (std::size_t k = 0; k < end; ++k) {
-			const Observation& member = observations_[at(members_[k])];
+			const Observation& member = observations_[at(structure.members[k])];
 			frame.observe(member.data, member.weight);
 		}
 		frame.align();
-		tangent_ = scale_ * frame.tangent();
-		bitangent_ = scale_ * frame.bitangent();
+		return frame;
 	}
 
-	void lay_out(Index i)
+	void lay_out(Index i, Structure<Lanes>& structure) const
 	{
+		const TangentFrame axes = axes_of(i, structure);
+		const Point tangent = scale_ * axes.tangent();
+		const Point bitangent = scale_ * axes.bitangent();
 		const Point center = observations_[at(i)].node;
-		groups_.resize(members_.size() / LANES);
-		for (std::size_t k = 0; k < groups_.size(); ++k) {
-			const Index* const members = members_.data() + LANES * k;
+		structure.groups.resize(structure.members.size() / LANES);
+		for (std::size_t k = 0; k < structure.groups.size(); ++k) {
+			const Index* const members = structure.members.data() + LANES * k;
 			const Observation& first = observations_[at(members[0])];
 			const Observation& second = observations_[at(members[1])];
 			const Observation& third = observations_[at(members[2])];
@@ -259,25 +298,18 @@ private:
 				return Lanes(
 					{value_of(first), value_of(second), value_of(third), value_of(fourth)});
 			};
-			Group& group = groups_[k];
+			typename Structure<Lanes>::Group& group = structure.groups[k];
 			group.x = Lanes(0);
 			group.y = Lanes(0);
 			for (int c = 0; c < 3; ++c) {
 				const Lanes offset =
 					lanes([c](const Observation& o) { return o.node[c]; }) - Lanes(center[c]);
-				group.x += offset * Lanes(tangent_[c]);
-				group.y += offset * Lanes(bitangent_[c]);
+				group.x += offset * Lanes(tangent[c]);
+				group.y += offset * Lanes(bitangent[c]);
 				group.data[at(c)] = lanes([c](const Observation& o) { return o.data[c]; });
 			}
 			group.weight = lanes([](const Observation& o) { return o.weight; });
-		}
-	}
-
-	void add_ring(int ring, std::size_t& group, typename Fit::Moments& sums) const
-	{
-		for (; group < group_ends_[at(ring)]; ++group) {
-			const Group& members = groups_[group];
-			sums.add(members.x, members.y, members.data, members.weight);
+			group.scatter = group.weight * lanes([](const Observation& o) { return o.scatter; });
 		}
 	}
 
@@ -287,15 +319,8 @@ private:
 	double scale_;
 	Patch patch_;
 	std::vector<Observation> observations_;
-
-	// Of the structure at hand:
-	std::vector<Index> members_;
-	std::vector<Group> groups_;
-	/// Members within each number of rings, and groups of them.
-	std::array<int, RINGS> counts_ = {};
-	std::array<std::size_t, RINGS> group_ends_ = {};
-	Point tangent_;
-	Point bitangent_;
+	/// Of `residual_variances`.
+	Structure<Lanes> sampled_;
 };
 
 /// Fits the structures and lets them vote.
@@ -320,26 +345,24 @@ public:
 
 	void vote(Index i, std::vector<Point>& sums)
 	{
-		if (chosen_[at(patch().mesh_faces()[at(i)])] == 0)
+		if (chosen_[at(patch().mesh_faces()[at(i)])] == 0 || !structures_.is_guided(i))
 			return;
 		Polynomial best;
-		Choice choice;
-		structures_.for_each_fit(i, [&](const Fit& fitted, int ring, int end) {
-			choice.rings = 0;
-			bool goes_on = true;
-			for (int size = ring; size < end && goes_on; ++size)
-				goes_on = judge(fitted, at(size - ring), size, choice);
-			if (choice.rings > 0) {
-				const std::size_t lane = at(choice.rings - ring);
-				best = {
-					fitted.polynomial(choice.kept, choice.terms, lane),
-					choice.weight,
-					choice.rings};
+		for (const double loosening : {0.0, options_.loosening}) {
+			structures_.find_members(i, options_.cos_threshold - loosening, tried_);
+			// The same members fit as they did.
+			if (loosening > 0 && tried_.counts == best_.counts)
+				break;
+			const Polynomial tried = fit(i);
+			if (loosening == 0 || LOOSE_RISK * tried.risk < best.risk) {
+				best = tried;
+				std::swap(tried_, best_);
 			}
-			return goes_on;
-		});
+			if (!(options_.loosening > 0))
+				break;
+		}
 		if (best.rings > 0)
-			structures_.add_votes(best, sums);
+			Structures<Lanes>::add_votes(best_, best, sums);
 	}
 
 private:
@@ -353,14 +376,37 @@ private:
 		int rings = 0;
 	};
 
+	// Fits the structure that is tried.
+	Polynomial fit(Index i)
+	{
+		Polynomial best;
+		Choice choice;
+		structures_.for_each_fit(i, tried_, [&](const Fit& fitted, int ring, int end) {
+			choice.rings = 0;
+			bool goes_on = true;
+			for (int size = ring; size < end && goes_on; ++size)
+				goes_on = judge(fitted, at(size - ring), size, choice);
+			if (choice.rings > 0) {
+				const std::size_t lane = at(choice.rings - ring);
+				best = {
+					fitted.polynomial(choice.kept, choice.terms, lane),
+					choice.weight,
+					choice.least_risk,
+					choice.rings};
+			}
+			return goes_on;
+		});
+		return best;
+	}
+
 	// Takes over the structure of that size if its risk is less; false where growing further has
 	// not paid.
 	bool judge(const Fit& fitted, std::size_t lane, int ring, Choice& choice) const
 	{
-		const int members = structures_.members(ring);
+		const int members = tried_.counts[at(ring)];
 		if (members == 0)
 			return true;
-		const double floor = floors_[at(ring)];
+		const double floor = floors_[at(ring)] * tried_.scatters[at(ring)];
 		const std::size_t terms = fitted.terms(degree_for(members), lane);
 		double residual = fitted.residual(terms, lane);
 		const int free = members - static_cast<int>(terms);
@@ -379,9 +425,9 @@ private:
 		}
 		const int kept_free = members - kept_count;
 		const double variance = kept_free > 0 ? residual / kept_free : floor;
-		const double risk =
-			floor * (1 + kept_count) / members +
-			BIAS_SHARE * std::max(0.0, variance - floor * (1 + 1 / std::sqrt(double(members))));
+		const double unexplained =
+			std::max(0.0, variance - floor * (1 + 1 / std::sqrt(double(members))));
+		const double risk = floor * (1 + kept_count) / members + BIAS_SHARE * unexplained;
 		if (risk < choice.least_risk) {
 			const double weight = 1 / std::sqrt(variance * (1 + kept_count) + LEAST_VARIANCE);
 			choice = {risk, kept, terms, weight, ring};
@@ -393,6 +439,9 @@ private:
 	const NormalFilterOptions& options_;
 	const Variances& floors_;
 	const std::vector<std::uint8_t>& chosen_;
+	/// The structure with the least risk, and the one that is tried.
+	Structure<Lanes> best_;
+	Structure<Lanes> tried_;
 };
 
 // The noise variance of the data, as structures of each size see it.

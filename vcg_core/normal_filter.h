@@ -18,12 +18,17 @@ struct NormalField {
 	std::vector<double> weights;
 	/// Face centroids: the nodes.
 	std::vector<Point> nodes;
+	/// Variances of the data by noise alone, up to a common factor; positive. Empty: all the same.
+	std::vector<double> scatters = {};
 };
 
 /// Options of `filter_normals`.
 struct NormalFilterOptions {
 	/// Faces are similar where the cosine of their guide directions is above this.
 	double cos_threshold = 0.6;
+	/// Where positive, a structure of the faces above a threshold lower by this is fitted too, and
+	/// taken where its risk is less.
+	double loosening = 0;
 	/// A structure reaches over this many rings of faces to that many (1 to MAX_RINGS); each face
 	/// takes the number with the least risk.
 	int smallest_ring = 2;
@@ -42,10 +47,10 @@ struct NormalFilterOptions {
 /// Filters face normals by discrete orthogonal polynomials of degree two over the similar faces
 /// around each face, with their centroids in the guide's tangent plane as scattered nodes.
 ///
-/// Each coefficient is kept or dropped by itself, by its energy against the noise; the size of the
-/// structure is the one whose variance and unexplained residual together are least. A structure
-/// votes for all its members; a face's result is the mean of its votes, weighted by their
-/// certainty.
+/// Each coefficient is kept or dropped by itself, by its energy against the noise; size and
+/// threshold of a structure are those whose variance and unexplained residual together, its risk,
+/// are least. A structure votes for all its members; a face's result is the mean of its votes,
+/// weighted by their certainty.
 ///
 /// @returns #F unit normals; a face without votes keeps its data. The same bits on any number of
 /// threads. O(#F R^2). Throws Cancelled.

@@ -272,8 +272,9 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"cos_threshold",
 					"Similarity threshold, cosine (-1: automatic)",
 					"Directions whose cosine is above this count as similar, up to 1. Paper: 0.7 to "
-					"0.9 for little noise, 0.5 to 0.65 for much. More keeps shallower edges, less "
-					"removes more noise.")))),
+					"0.9 for little noise, 0.5 to 0.65 for much. The adaptive method tries a lower one "
+					"(by 0.25) too, and takes the better for each face. More keeps shallower edges, "
+					"less removes more noise.")))),
 		bind(
 			&Options::cos_threshold_increment,
 			advanced(within(

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 
 namespace orthopoly {
 
@@ -75,6 +76,25 @@ Point umbrella(
 	return moved;
 }
 
+// A step of some of the vertices: vertex k of them goes `length_of(k)`.
+template<class LengthOf>
+void umbrella_step(
+	const Workspace& workspace,
+	const std::vector<Index>& vertices,
+	const std::vector<std::uint8_t>& flags,
+	const LengthOf& length_of,
+	std::vector<Point>& positions)
+{
+	std::vector<Point> moved(vertices.size());
+	const auto count = static_cast<Index>(vertices.size());
+	workspace.execution.for_each(count, [&](std::size_t k) {
+		const bool turned_over = !flags.empty() && flags[at(vertices[k])] == TURNED_OVER;
+		moved[k] = umbrella(workspace, length_of(k), turned_over, positions, vertices[k]);
+	});
+	workspace.execution.for_each(
+		count, [&](std::size_t k) { positions[at(vertices[k])] = moved[k]; });
+}
+
 } // namespace
 
 void taubin_smooth(
@@ -88,20 +108,31 @@ void taubin_smooth(
 		if (only.empty() || only[at(i)] != 0)
 			vertices.push_back(i);
 	}
-	std::vector<Point> moved(vertices.size());
-	const auto count = static_cast<Index>(vertices.size());
-	const auto step = [&](double length) {
-		workspace.execution.for_each(count, [&](std::size_t k) {
-			const bool turned_over = !only.empty() && only[at(vertices[k])] == TURNED_OVER;
-			moved[k] = umbrella(workspace, length, turned_over, positions, vertices[k]);
-		});
-		workspace.execution.for_each(
-			count, [&](std::size_t k) { positions[at(vertices[k])] = moved[k]; });
-	};
 	for (double left = pairs; left > 0; left -= 1) {
 		const double share = std::min(1.0, left);
-		step(share * SHRINK);
-		step(share * INFLATE);
+		for (const double step : {SHRINK, INFLATE})
+			umbrella_step(
+				workspace, vertices, only, [=](std::size_t) { return share * step; }, positions);
+	}
+}
+
+void taubin_smooth(
+	const Workspace& workspace, const std::vector<double>& pairs, std::vector<Point>& positions)
+{
+	std::vector<Index> vertices(positions.size());
+	std::iota(vertices.begin(), vertices.end(), 0);
+	for (double done = 0;; done += 1) {
+		const auto is_done = [&](Index i) { return !(pairs[at(i)] > done); };
+		vertices.erase(std::remove_if(vertices.begin(), vertices.end(), is_done), vertices.end());
+		if (vertices.empty())
+			return;
+		for (const double step : {SHRINK, INFLATE})
+			umbrella_step(
+				workspace,
+				vertices,
+				{},
+				[&](std::size_t k) { return std::min(1.0, pairs[at(vertices[k])] - done) * step; },
+				positions);
 	}
 }
 

@@ -22,6 +22,10 @@ void taubin_smooth(
 	std::vector<Point>& positions,
 	const std::vector<std::uint8_t>& only = {});
 
+/// The same with a number of pairs of each vertex's own (#V), no outline moving.
+void taubin_smooth(
+	const Workspace& workspace, const std::vector<double>& pairs, std::vector<Point>& positions);
+
 /// Which faces `folded_vertices` takes for folded over.
 struct FoldCriterion {
 	/// Turned away from the faces around it (those that share a vertex, itself left out) by more

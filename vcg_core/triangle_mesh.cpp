@@ -95,6 +95,14 @@ double longest_edge_squared(const std::vector<Point>& positions, const Face& fac
 	return std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
 }
 
+double edge_squares(const std::vector<Point>& positions, const Face& face)
+{
+	double sum = 0;
+	for (std::size_t k = 0; k < 3; ++k)
+		sum += (corner(positions, face, (k + 1) % 3) - corner(positions, face, k)).squaredNorm();
+	return sum;
+}
+
 double perimeter(const std::vector<Point>& positions, const Face& face)
 {
 	double sum = 0;

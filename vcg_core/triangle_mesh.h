@@ -71,6 +71,9 @@ FaceGeometry face_geometry(const std::vector<Point>& positions, const std::vecto
 /// Square of the length of a face's longest edge.
 double longest_edge_squared(const std::vector<Point>& positions, const Face& face);
 
+/// Sum of the squares of the lengths of a face's edges.
+double edge_squares(const std::vector<Point>& positions, const Face& face);
+
 /// Sum of the lengths of a face's edges.
 double perimeter(const std::vector<Point>& positions, const Face& face);
 

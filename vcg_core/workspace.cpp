@@ -29,6 +29,17 @@ Point cross_product_around(
 	return sum;
 }
 
+double mean_edge_square_around(
+	const Workspace& workspace, const std::vector<Point>& positions, Index vertex)
+{
+	const Index* const end = workspace.vertex_faces.end(vertex);
+	double sum = 0;
+	for (const Index* it = workspace.vertex_faces.begin(vertex); it != end; ++it)
+		sum += edge_squares(positions, workspace.mesh.faces[static_cast<std::size_t>(*it)]);
+	const Index edges = 3 * workspace.vertex_faces.size(vertex);
+	return edges > 0 ? sum / static_cast<double>(edges) : 0;
+}
+
 FaceGeometry face_geometry(const Workspace& workspace, const std::vector<Point>& positions)
 {
 	FaceGeometry geometry(workspace.mesh.faces.size());

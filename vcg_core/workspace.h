@@ -38,6 +38,11 @@ struct Workspace {
 Point cross_product_around(
 	const Workspace& workspace, const std::vector<Point>& positions, Index vertex);
 
+/// Mean square of the lengths of the edges of the faces around a vertex; zero for one without a
+/// face.
+double mean_edge_square_around(
+	const Workspace& workspace, const std::vector<Point>& positions, Index vertex);
+
 /// As the functions of the same names for any mesh, on all threads.
 FaceGeometry face_geometry(const Workspace& workspace, const std::vector<Point>& positions);
 double mean_edge_length(const Workspace& workspace, const std::vector<Point>& positions);

@@ -103,6 +103,26 @@ TEST_CASE("Detail as small as the triangles is not noise", "[noise_level]")
 	}
 }
 
+TEST_CASE("A drawn part of few faces reads as clean, and as noisy with noise", "[noise_level]")
+{
+	// Edges in every ring: polynomials leave 0.03 to 0.09. But half of its faces are in a plane
+	// with their neighbours.
+	for (const Index faces : {200, 400, 800}) {
+		const TriangleMesh clean = make_part(faces);
+		CAPTURE(faces);
+		const StepFixture f(clean);
+		const NoiseLevels levels = estimate_noise_levels(f.workspace, clean.positions);
+		CHECK(levels.flat > LEAST_NOISE);
+		CHECK(levels.drawn == 1);
+		CHECK(estimated(clean) == 0);
+		for (const double sigma : {0.05, 0.1, 0.3}) {
+			const TriangleMesh mesh = noisy(clean, sigma);
+			const StepFixture g(mesh);
+			CHECK(estimate_noise_levels(g.workspace, mesh.positions).drawn == 0);
+		}
+	}
+}
+
 TEST_CASE("A mesh without neighbours enough reads as clean", "[noise_level]")
 {
 	CHECK(estimated(tetrahedron()) == 0);

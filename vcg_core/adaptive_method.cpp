@@ -537,7 +537,8 @@ void run_adaptive_method(
 	if (correlation < 1)
 		outliers = repair_outliers(workspace, levels);
 	// Noise that goes together over several edges grows with the rings as detail does.
-	const double level = between(levels.flat, levels.rough, correlation);
+	const double white = outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;
+	const double level = between(white, levels.rough, correlation);
 	result.estimated_noise = between(level, outliers.level, outliers.share);
 	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
 	result.resolved.noise_type = correlation > 0.5 ? NoiseType::Scanner : NoiseType::White;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace orthopoly {
 
@@ -68,6 +69,18 @@ constexpr double SIMILAR_LEVEL = 0.97;
 // far as that, and the choice takes noise away.
 constexpr double SIMILAR_TO = 0.33;
 constexpr double SIMILAR_NEVER = 0.5;
+
+// Noise leaves hardly a pair of faces in one plane, while surfaces that were drawn have many. Below
+// the first share of what noise of the level makes of this share of the pairs there is none, from
+// the second on there may be; strong noise, which bends edges less than it would were the surface
+// flat, makes a third at least.
+constexpr Quantile IN_PLANE = {0.2, 0.2533};
+constexpr double DRAWN = 0.1;
+constexpr double MEASURED = 0.25;
+
+// A corner seen so far off the other face in its plane says more of the noise there than of the
+// angle between both: sum of the sizes of its barycentric coordinates.
+constexpr double FAR_OFF = 8;
 
 constexpr Index GRAIN = 64;
 
@@ -272,6 +285,60 @@ double share_of_noise(const VariancesByRings& variances)
 	return sum / static_cast<double>(GROWING.size());
 }
 
+// How far the corner of a face is from the plane of another, over the deviation that noise of one
+// everywhere would give it; negative where the other has no area or is too far off.
+double height_over_plane(const std::vector<Point>& positions, const Face& plane, Index corner)
+{
+	const Point& a = positions[static_cast<std::size_t>(plane[0])];
+	const Point ab = positions[static_cast<std::size_t>(plane[1])] - a;
+	const Point ac = positions[static_cast<std::size_t>(plane[2])] - a;
+	const Point to = positions[static_cast<std::size_t>(corner)] - a;
+	const Point normal = ab.cross(ac);
+	const double square = normal.squaredNorm();
+	if (!(square > 0))
+		return -1;
+	const double b = to.cross(ac).dot(normal) / square;
+	const double c = ab.cross(to).dot(normal) / square;
+	const Eigen::Vector3d shares(1 - b - c, b, c);
+	if (!(shares.lpNorm<1>() < FAR_OFF))
+		return -1;
+	return std::abs(to.dot(normal)) / std::sqrt(square * (1 + shares.squaredNorm()));
+}
+
+// The level that faces nearly in a plane with their neighbours allow; infinite where there are no
+// neighbours.
+double level_in_plane(
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const std::vector<Index>& sample)
+{
+	std::vector<double> heights;
+	const std::vector<Face>& faces = workspace.mesh.faces;
+	for (const Index vertex : sample) {
+		const Index* const begin = workspace.vertex_faces.begin(vertex);
+		const Index* const end = workspace.vertex_faces.end(vertex);
+		for (const Index* it = begin; it != end; ++it) {
+			const Face& face = faces[static_cast<std::size_t>(*it)];
+			const auto own = std::find(face.begin(), face.end(), vertex) - face.begin();
+			const Index next = face[static_cast<std::size_t>((own + 1) % 3)];
+			// The faces that have the corner after that before it are across the edge.
+			for (const Index* other = begin; other != end; ++other) {
+				const Face& across = faces[static_cast<std::size_t>(*other)];
+				const auto place = std::find(across.begin(), across.end(), vertex) - across.begin();
+				if (other == it || across[static_cast<std::size_t>((place + 2) % 3)] != next)
+					continue;
+				const Index corner = across[static_cast<std::size_t>((place + 1) % 3)];
+				const double height = height_over_plane(positions, face, corner);
+				if (height >= 0)
+					heights.push_back(height);
+			}
+		}
+	}
+	if (heights.empty())
+		return std::numeric_limits<double>::infinity();
+	return quantile(heights, IN_PLANE.share) / IN_PLANE.normal;
+}
+
 // The level of whole rings, or that of similar faces where it shows edges in the first; in edge
 // lengths.
 double level_beside_edges(double whole, double similar, double length)
@@ -338,6 +405,8 @@ NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<
 			const double white = std::sqrt(share_of_noise(variances)) * flat / length;
 			result.flat -= share * std::max(0.0, result.rough - white);
 		}
+		const double in_plane = level_in_plane(workspace, positions, sample) / length;
+		result.drawn = way_between(MEASURED, DRAWN, in_plane / result.flat);
 		result.ordinary = level(variances[0], ORDINARY) / length;
 	}
 	return result;
@@ -345,7 +414,8 @@ NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<
 
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions)
 {
-	return estimate_noise_levels(workspace, positions).flat;
+	const NoiseLevels levels = estimate_noise_levels(workspace, positions);
+	return (1 - levels.drawn) * levels.flat;
 }
 
 } // namespace orthopoly

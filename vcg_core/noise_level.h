@@ -18,14 +18,17 @@ constexpr double LEAST_NOISE = 0.025;
 /// normalised by its degrees of freedom, keeps edges out. Where edges are too close to each other
 /// for that, so that polynomials over the similar faces alone leave less, the level is what these
 /// leave. Where polynomials over more rings leave more, the growth tells how much of it is detail
-/// as small as the triangles, which is no noise. Zero where no vertex has neighbours enough. O(#V)
-/// time.
+/// as small as the triangles, which is no noise. Zero where no vertex has neighbours enough, and
+/// where more pairs of faces lie in a plane than noise would leave. O(#V) time.
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions);
 
 /// The same in several ways, and what kind of noise it is.
 struct NoiseLevels {
-	/// In the flatter places: what `estimate_noise_level` gives. Misses outliers that are rare.
+	/// In the flatter places. Misses outliers that are rare.
 	double flat = 0;
+	/// Share of the level that is not there, 0 to 1: of surfaces that were drawn with their faces in
+	/// planes, or where but some vertices are outliers.
+	double drawn = 0;
 	/// The same with what is taken for detail: noise that goes together over several edges grows
 	/// like it.
 	double rough = 0;

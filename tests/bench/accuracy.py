@@ -21,6 +21,7 @@ import re
 import statistics
 import sys
 import tempfile
+import threading
 import time
 from dataclasses import asdict, dataclass
 
@@ -119,13 +120,18 @@ def cases_of_our_own(seeds, say):
 # ---------------------------------------------------------------------------------------------
 # Running one
 
+LOADING = threading.Lock()
+
+
 def load(path):
 	import pymeshlab
 
-	meshes = pymeshlab.MeshSet()
-	meshes.load_new_mesh(str(path))
-	mesh = meshes.current_mesh()
-	return mesh.vertex_matrix(), mesh.face_matrix()
+	# It changes the working directory meanwhile, and --jobs runs cases side by side.
+	with LOADING:
+		meshes = pymeshlab.MeshSet()
+		meshes.load_new_mesh(str(path))
+		mesh = meshes.current_mesh()
+		return mesh.vertex_matrix(), mesh.face_matrix()
 
 
 def noise_along_normals(truth, noisy):

@@ -37,6 +37,9 @@ constexpr double MARGIN = 1.25;
 // heights less than it does harm.
 constexpr double LOOSE_RISK = 1.2;
 
+// So many times the members a looser structure has to have to be worth a fit.
+constexpr double WORTH_LOOSENING = 1.1;
+
 // Past this many times the least risk so far, growing further has not paid.
 constexpr double HOPELESS = 3;
 
@@ -174,11 +177,10 @@ public:
 		if (guides_[at(i)].isZero(0) || chosen_[at(patch_.mesh_faces()[at(i)])] == 0)
 			return;
 		Polynomial best;
+		patch_.collect(i, options_.largest_ring);
 		for (const double loosening : {0.0, options_.loosening}) {
-			find_members(i, options_.cos_threshold - loosening);
-			// The same members fit as they did.
-			if (loosening > 0 && tried_.member_ends == best_.member_ends)
-				break;
+			const std::size_t looser = find_members(i, options_.cos_threshold - loosening);
+			const std::size_t members = tried_.member_ends.back();
 			choose_axes(i);
 			find_vertices();
 			lay_out(i);
@@ -187,7 +189,8 @@ public:
 				best = tried;
 				std::swap(tried_, best_);
 			}
-			if (!(options_.loosening > 0))
+			if (loosening > 0 ||
+				static_cast<double>(looser) < WORTH_LOOSENING * static_cast<double>(members))
 				break;
 		}
 		if (best.rings > 0)
@@ -195,25 +198,29 @@ public:
 	}
 
 private:
-	// The similar faces around a face.
-	void find_members(Index i, double cos_threshold)
+	// The similar faces around a face; returns how many there would be for a looser structure.
+	std::size_t find_members(Index i, double cos_threshold)
 	{
-		patch_.collect(i, options_.largest_ring);
+		const double looser = cos_threshold - options_.loosening;
 		const Point guide = guides_[at(i)];
 		const IndexSpan faces = patch_.collected();
 		const Point* const guides = guides_.data();
 		tried_.members.resize(faces.size() + LANES);
 		Index* const members = tried_.members.data();
 		std::size_t end = 0;
+		std::size_t looser_count = 0;
 		std::size_t k = 0;
 		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
 			for (; k < patch_.count_within(ring); ++k) {
 				const Index j = faces[k];
+				const double cosine = guide.dot(guides[j]);
 				members[end] = j;
-				end += static_cast<std::size_t>(guide.dot(guides[j]) > cos_threshold);
+				end += static_cast<std::size_t>(cosine > cos_threshold);
+				looser_count += static_cast<std::size_t>(cosine > looser);
 			}
 			tried_.member_ends[at(ring)] = end;
 		}
+		return looser_count;
 	}
 
 	// Axes across the guide, turned to where the guides around it change most.

@@ -43,6 +43,10 @@ constexpr double BIAS_SHARE = 0.25;
 // agree, so that they seem to scatter less than they do.
 constexpr double LOOSE_RISK = 0.9;
 
+// So many times the members a looser structure has to have to be worth a fit: in flat regions it
+// has a few more, whom the noise turned away.
+constexpr double WORTH_LOOSENING = 1.1;
+
 // Past this many times the least risk so far, growing further has not paid.
 constexpr double HOPELESS = 3;
 
@@ -146,10 +150,14 @@ public:
 	/// Whether a face has a direction to choose members by.
 	bool is_guided(Index i) const { return !observations_[at(i)].guide.isZero(0); }
 
-	/// The members of the structure of a face.
-	void find_members(Index i, double cos_threshold, Structure<Lanes>& structure)
+	/// Gathers whoever may be a member of the structures of a face.
+	void collect(Index i) { patch_.collect(i, options_.largest_ring); }
+
+	/// The members of the structure of a face that was collected; returns how many a looser one
+	/// would have.
+	int find_members(Index i, double cos_threshold, Structure<Lanes>& structure)
 	{
-		patch_.collect(i, options_.largest_ring);
+		const double looser = cos_threshold - options_.loosening;
 		const Observation* const observations = observations_.data();
 		const Point guide = observations[i].guide;
 		const auto nobody = static_cast<Index>(observations_.size()) - 1;
@@ -159,17 +167,20 @@ public:
 		std::size_t end = 0;
 		std::size_t k = 0;
 		int count = 0;
+		int looser_count = 0;
 		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
 			const std::size_t begin = end;
 			for (; k < patch_.count_within(ring); ++k) {
 				const Index j = faces[k];
 				const Observation& other = observations[j];
 				// Bits and no branches: half of them would be guessed wrong.
-				const bool is_similar = guide.dot(other.guide) > cos_threshold;
+				const double cosine = guide.dot(other.guide);
 				const bool has_weight = other.weight > 0;
 				const bool is_on_this_side = guide.dot(other.data) > 0;
+				const bool may_be = has_weight & is_on_this_side;
 				members[end] = j;
-				end += static_cast<std::size_t>(is_similar & has_weight & is_on_this_side);
+				end += static_cast<std::size_t>(may_be & (cosine > cos_threshold));
+				looser_count += static_cast<int>(may_be & (cosine > looser));
 			}
 			count += static_cast<int>(end - begin);
 			structure.counts[at(ring)] = count;
@@ -178,6 +189,7 @@ public:
 			structure.group_ends[at(ring)] = end / LANES;
 		}
 		structure.members.resize(end);
+		return looser_count;
 	}
 
 	/// Calls visit(fit, ring, end) for the structures of `ring` rings, in lane 0, to less than
@@ -222,6 +234,7 @@ public:
 		variances.fill(-1);
 		if (!is_guided(i))
 			return variances;
+		collect(i);
 		find_members(i, options_.cos_threshold, sampled_);
 		for_each_fit(i, sampled_, [&](const Fit& fitted, int ring, int end) {
 			for (int size = ring; size < end; ++size) {
@@ -348,17 +361,17 @@ public:
 		if (chosen_[at(patch().mesh_faces()[at(i)])] == 0 || !structures_.is_guided(i))
 			return;
 		Polynomial best;
+		structures_.collect(i);
 		for (const double loosening : {0.0, options_.loosening}) {
-			structures_.find_members(i, options_.cos_threshold - loosening, tried_);
-			// The same members fit as they did.
-			if (loosening > 0 && tried_.counts == best_.counts)
-				break;
+			const int looser =
+				structures_.find_members(i, options_.cos_threshold - loosening, tried_);
+			const int members = tried_.counts[at(options_.largest_ring)];
 			const Polynomial tried = fit(i);
 			if (loosening == 0 || LOOSE_RISK * tried.risk < best.risk) {
 				best = tried;
 				std::swap(tried_, best_);
 			}
-			if (!(options_.loosening > 0))
+			if (loosening > 0 || looser < WORTH_LOOSENING * members)
 				break;
 		}
 		if (best.rings > 0)

@@ -312,26 +312,40 @@ double level_in_plane(
 	const std::vector<Point>& positions,
 	const std::vector<Index>& sample)
 {
+	// The corners of a face that follow the vertex: the last one first, to look faces up by.
+	struct Spoke {
+		Index last;
+		Index next;
+		Index face;
+	};
+	std::vector<Spoke> spokes;
 	std::vector<double> heights;
-	const std::vector<Face>& faces = workspace.mesh.faces;
 	for (const Index vertex : sample) {
-		const Index* const begin = workspace.vertex_faces.begin(vertex);
+		spokes.clear();
 		const Index* const end = workspace.vertex_faces.end(vertex);
-		for (const Index* it = begin; it != end; ++it) {
-			const Face& face = faces[static_cast<std::size_t>(*it)];
+		for (const Index* it = workspace.vertex_faces.begin(vertex); it != end; ++it) {
+			const Face& face = workspace.mesh.faces[static_cast<std::size_t>(*it)];
 			const auto own = std::find(face.begin(), face.end(), vertex) - face.begin();
-			const Index next = face[static_cast<std::size_t>((own + 1) % 3)];
-			// The faces that have the corner after that before it are across the edge.
-			for (const Index* other = begin; other != end; ++other) {
-				const Face& across = faces[static_cast<std::size_t>(*other)];
-				const auto place = std::find(across.begin(), across.end(), vertex) - across.begin();
-				if (other == it || across[static_cast<std::size_t>((place + 2) % 3)] != next)
-					continue;
-				const Index corner = across[static_cast<std::size_t>((place + 1) % 3)];
-				const double height = height_over_plane(positions, face, corner);
-				if (height >= 0)
-					heights.push_back(height);
-			}
+			const auto after = [&](std::ptrdiff_t k) {
+				return face[static_cast<std::size_t>((own + k) % 3)];
+			};
+			spokes.push_back({after(2), after(1), *it});
+		}
+		std::sort(spokes.begin(), spokes.end(), [](const Spoke& a, const Spoke& b) {
+			return a.last != b.last ? a.last < b.last : a.face < b.face;
+		});
+		for (const Spoke& spoke : spokes) {
+			// The face across the edge to the next corner has that one as its last.
+			const auto across = std::lower_bound(
+				spokes.begin(), spokes.end(), spoke.next, [](const Spoke& other, Index corner) {
+					return other.last < corner;
+				});
+			if (across == spokes.end() || across->last != spoke.next)
+				continue;
+			const Face& face = workspace.mesh.faces[static_cast<std::size_t>(spoke.face)];
+			const double height = height_over_plane(positions, face, across->next);
+			if (height >= 0)
+				heights.push_back(height);
 		}
 	}
 	if (heights.empty())

@@ -26,8 +26,8 @@ double estimate_noise_level(const Workspace& workspace, const std::vector<Point>
 struct NoiseLevels {
 	/// In the flatter places. Misses outliers that are rare.
 	double flat = 0;
-	/// Share of the level that is not there, 0 to 1: of surfaces that were drawn with their faces in
-	/// planes, or where but some vertices are outliers.
+	/// Share of the level that is not there, 0 to 1: of surfaces that were drawn with their faces
+	/// in planes, or where but some vertices are outliers.
 	double drawn = 0;
 	/// The same with what is taken for detail: noise that goes together over several edges grows
 	/// like it.

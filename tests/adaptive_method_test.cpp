@@ -416,3 +416,16 @@ TEST_CASE(
 		CHECK(many.estimated_noise == one.estimated_noise);
 	}
 }
+
+TEST_CASE("Scanner noise is filtered at a level of zero too", "[adaptive_method]")
+{
+	const TriangleMesh truth = make_sphere(4000);
+	const TriangleMesh mesh = noisy(truth, 0.2);
+	const auto angle = [&](double level) {
+		DenoiseOptions options;
+		options.noise_type = NoiseType::Scanner;
+		options.noise_level = level;
+		return measure(with_positions(mesh, denoised(mesh, options).positions), truth).mean_angle;
+	};
+	CHECK(angle(0) < 1.5 * angle(0.2));
+}

@@ -278,7 +278,8 @@ void record(const Plan& plan, DenoiseOptions& resolved)
 	resolved.cos_threshold_increment = plan.cos_threshold_increment;
 }
 
-// How much the noise of the corners scatters the normal of each face: #F.
+// How much the noise of the corners scatters the normal of each face: #F, or empty where no noise
+// is known that could tell faces apart.
 //
 // Independent noise at the corners tilts a triangle by a mean square of sigma^2 times the sum of
 // its squared edges over four times its squared area; turned so far that it could be anywhere, it
@@ -286,6 +287,8 @@ void record(const Plan& plan, DenoiseOptions& resolved)
 std::vector<double>
 scatters_by(double sigma, const Workspace& workspace, const std::vector<Point>& positions)
 {
+	if (!(sigma > 0))
+		return {};
 	std::vector<double> scatters(workspace.mesh.faces.size());
 	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
 		const Face& face = workspace.mesh.faces[i];

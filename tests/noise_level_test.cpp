@@ -123,6 +123,20 @@ TEST_CASE("A drawn part of few faces reads as clean, and as noisy with noise", "
 	}
 }
 
+TEST_CASE("Triangles lower than the noise do not lower the estimate", "[noise_level]")
+{
+	// Half of the vertices in triangles an eighth as wide as the others.
+	TriangleMesh clean = make_flat_grid(60);
+	for (Point& position : clean.positions)
+		position.x() = std::max(position.x(), 0.4375 + 0.125 * position.x());
+	for (const double sigma : {0.1, 0.3, 0.5}) {
+		CAPTURE(sigma);
+		const TriangleMesh mesh = noisy(clean, sigma);
+		const double expected = true_level(clean, mesh);
+		CHECK(std::abs(estimated(mesh) - expected) < std::max(0.02, 0.15 * expected));
+	}
+}
+
 TEST_CASE("A mesh without neighbours enough reads as clean", "[noise_level]")
 {
 	CHECK(estimated(tetrahedron()) == 0);

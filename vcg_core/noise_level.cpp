@@ -82,6 +82,15 @@ constexpr double MEASURED = 0.25;
 // angle between both: sum of the sizes of its barycentric coordinates.
 constexpr double FAR_OFF = 8;
 
+// Triangles lower than this many deviations of the noise are turned by it so far that heights over
+// the smoothed surface miss a part of it: half of it where they are half a deviation low. What is
+// read at them is left out, but not at this share of the vertices, where triangles are highest.
+constexpr double STEADY_HEIGHT = 1.5;
+constexpr double LEAST_STEADY = 0.4;
+
+// Each time with the level of the last; from the third on it stays.
+constexpr int STEADY_ROUNDS = 3;
+
 constexpr Index GRAIN = 64;
 
 // Rings of vertices of a polynomial.
@@ -240,13 +249,62 @@ double level(const std::vector<Variance>& variances, const Quantile& wanted)
 	return std::sqrt(quantile(values, wanted.share));
 }
 
+// The mean height of the triangles around each of some vertices, over their longest sides.
+std::vector<double> triangle_heights(
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const std::vector<Index>& vertices)
+{
+	std::vector<double> heights(vertices.size(), 0);
+	workspace.execution.for_each(static_cast<Index>(vertices.size()), [&](std::size_t i) {
+		const IndexLists& around = workspace.vertex_faces;
+		const Index vertex = vertices[i];
+		for (const Index* it = around.begin(vertex); it != around.end(vertex); ++it) {
+			const Face& face = workspace.mesh.faces[static_cast<std::size_t>(*it)];
+			const double longest = std::sqrt(longest_edge_squared(positions, face));
+			if (longest > 0)
+				heights[i] += face_cross_product(positions, face).norm() / longest;
+		}
+		heights[i] /= std::max<double>(1, around.size(vertex));
+	});
+	return heights;
+}
+
+// Takes the variances of every so-manieth vertex away where its triangles are lower than that.
+void leave_out_lower(
+	const std::vector<double>& heights,
+	std::size_t every,
+	double least,
+	std::vector<Variance>& variances)
+{
+	for (std::size_t i = 0; i < variances.size(); ++i) {
+		if (heights[every * i] < least)
+			variances[i].value = -1;
+	}
+}
+
+// The height of triangles from which the variances of as many vertices tell all of the noise.
+double
+least_steady_height(const std::vector<double>& heights, const std::vector<Variance>& variances)
+{
+	std::vector<double> values = heights;
+	const double largest = quantile(values, 1 - LEAST_STEADY);
+	double least = 0;
+	for (int round = 0; round < STEADY_ROUNDS; ++round) {
+		std::vector<Variance> kept = variances;
+		leave_out_lower(heights, 1, least, kept);
+		least = std::min(largest, STEADY_HEIGHT * level(kept, FLAT));
+	}
+	return least;
+}
+
 std::vector<Variance> similar_variances(
 	const Workspace& workspace,
 	const std::vector<Point>& positions,
 	const std::vector<Point>& smooth,
-	const std::vector<Index>& sample)
+	const std::vector<Index>& sample,
+	std::size_t every)
 {
-	const std::size_t every = std::max<std::size_t>(1, sample.size() / SIMILAR_SAMPLES);
 	std::vector<Variance> variances(sample.size() / every);
 	std::vector<SimilarHeights> heights(
 		static_cast<std::size_t>(workspace.execution.threads()),
@@ -406,11 +464,17 @@ NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<
 	NoiseLevels result;
 	if (!ratios.empty())
 		result.median_ratio = quantile(ratios, 0.5);
+	const std::vector<double> triangles = triangle_heights(workspace, smooth, sample);
+	const double least = least_steady_height(triangles, variances[0]);
+	for (std::size_t k = 0; k < variances.size(); ++k)
+		leave_out_lower(triangles, k == 0 ? 1 : every, least, variances[k]);
 	const double flat = level(variances[0], FLAT);
 	const double length = clean_edge_length(workspace, positions, smooth, flat);
 	if (length > 0) {
-		const std::vector<Variance> similar =
-			similar_variances(workspace, positions, smooth, sample);
+		const std::size_t seldom = std::max<std::size_t>(1, sample.size() / SIMILAR_SAMPLES);
+		std::vector<Variance> similar =
+			similar_variances(workspace, positions, smooth, sample, seldom);
+		leave_out_lower(triangles, seldom, least, similar);
 		const double without_edges = level(similar, SIMILAR_FLAT);
 		result.rough = level_beside_edges(flat, without_edges, length);
 		result.flat = result.rough;

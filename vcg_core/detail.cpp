@@ -5,6 +5,7 @@
 #include "local_heights.h"
 #include "sampling.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 
@@ -12,17 +13,37 @@ namespace orthopoly {
 
 namespace {
 
-// Averages over vertices and their neighbours, one after the other: together a mean over some forty
-// vertices, which noise alone makes vary by a quarter.
-constexpr int AVERAGES = 8;
+// Moves count up to so many deviations of the noise, so that a vertex far off, be it an outlier or
+// moved on purpose, does not make its surroundings detail.
+constexpr double LARGEST_MOVE = 3;
+
+// Averages over vertices and their neighbours, one after the other, of what tells how much the
+// moves around a vertex have in common: together a mean over some two hundred vertices.
+constexpr int COMMON_AVERAGES = 40;
+
+// Mean product of a move and the average of those around it where they are noise: what a vertex
+// counts in its own average.
+constexpr double NOISE_IN_PRODUCT = 0.26;
+
+// Part of the noise variance by which going back along the averages would lower the mean square of
+// the moves, up to which that is taken for chance, and from which for detail.
+constexpr double CHANCE = 0.05;
+constexpr double CERTAIN = 0.14;
+
+// Averages are less than the detail they are of, so that more than all of them may be given back.
+constexpr double LARGEST_GAIN = 1.5;
+
+// Vertices whose faces' normals add up to less than this (as two at 64 degrees do) lie on an edge.
+// Those slide along it, which no normal of theirs tells.
+constexpr double EDGE = 0.85;
+
+// Averages of the squared moves: together a mean over some forty vertices, which noise alone makes
+// vary by a quarter.
+constexpr int SQUARE_AVERAGES = 8;
 
 // Noise variances below which moves are taken for noise alone: more than four times that beyond
 // one, so that in a million vertices few are not.
 constexpr double MARGIN = 2.1;
-
-// Squares count up to so many noise variances, so that a vertex far off, be it an outlier or moved
-// on purpose, does not make its surroundings detail.
-constexpr double LARGEST = 9;
 
 // Rings of vertices whose median distance is the ordinary one around a vertex.
 constexpr int RINGS = 2;
@@ -43,29 +64,41 @@ std::size_t at(Index index)
 	return static_cast<std::size_t>(index);
 }
 
-// Squares of how far vertices were moved along their normals, as far as they count.
-std::vector<double>
-squared_moves(const Workspace& workspace, double largest, const std::vector<Point>& positions)
+/// How vertices were moved from where they were measured, in deviations of the noise.
+struct Moves {
+	/// Back along the normals, as far as they count: #V; zero where there is no normal.
+	std::vector<double> lengths;
+	/// #V of length one, or zero.
+	std::vector<Point> normals;
+};
+
+Moves moves_along_normals(
+	const Workspace& workspace, double sigma, const std::vector<Point>& positions)
 {
-	std::vector<double> squares(positions.size(), 0.0);
+	Moves moves {
+		std::vector<double>(positions.size(), 0.0),
+		std::vector<Point>(positions.size(), Point::Zero())};
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		const Point normal = cross_product_around(workspace, positions, static_cast<Index>(i));
-		const double length = normal.squaredNorm();
+		const Point cross = cross_product_around(workspace, positions, static_cast<Index>(i));
+		const double length = cross.norm();
 		if (!(length > 0))
 			return;
-		const double move = (workspace.mesh.positions[i] - positions[i]).dot(normal);
-		squares[i] = std::min(largest, move * move / length);
+		moves.normals[i] = cross / length;
+		const double move =
+			(workspace.mesh.positions[i] - positions[i]).dot(moves.normals[i]) / sigma;
+		moves.lengths[i] = std::max(-LARGEST_MOVE, std::min(LARGEST_MOVE, move));
 	});
-	return squares;
+	return moves;
 }
 
 // Takes means over each vertex and its neighbours, these weighed by the faces shared, so many
 // times.
-void average(const Workspace& workspace, int times, std::vector<double>& values)
+template<class Value>
+void average(const Workspace& workspace, int times, std::vector<Value>& values)
 {
 	const std::vector<Face>& faces = workspace.mesh.faces;
 	const IndexLists& around = workspace.vertex_faces;
-	std::vector<double> sums(faces.size());
+	std::vector<Value> sums(faces.size());
 	for (int k = 0; k < times; ++k) {
 		workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
 			const Face& face = faces[i];
@@ -73,15 +106,49 @@ void average(const Workspace& workspace, int times, std::vector<double>& values)
 		});
 		workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
 			const auto vertex = static_cast<Index>(i);
-			const Index count = around.size(vertex);
-			if (count == 0)
+			const Index* const first = around.begin(vertex);
+			const Index* const end = around.end(vertex);
+			if (first == end)
 				return;
-			double sum = 0;
-			for (const Index* face = around.begin(vertex); face != around.end(vertex); ++face)
+			Value sum = sums[at(*first)];
+			for (const Index* face = first + 1; face != end; ++face)
 				sum += sums[at(*face)];
-			values[i] = sum / (3.0 * static_cast<double>(count));
+			values[i] = sum / (3.0 * static_cast<double>(end - first));
 		});
 	}
+}
+
+// Takes vertices back along what their moves have in common with those around them.
+void give_back_common(const Workspace& workspace, double sigma, std::vector<Point>& positions)
+{
+	Moves moves = moves_along_normals(workspace, sigma, positions);
+	const std::vector<double> areas = areas_around(workspace, positions);
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		const Point cross = cross_product_around(workspace, positions, static_cast<Index>(i));
+		if (cross.norm() < EDGE * areas[i])
+			moves.lengths[i] = 0;
+	});
+	// Averaged once and twice, half of each: detail is narrow where there is little noise, and as
+	// wide as the fits where these are blurred by more.
+	std::vector<double> averages = moves.lengths;
+	average(workspace, 1, averages);
+	std::vector<double> wider = averages;
+	average(workspace, 1, wider);
+	// Mean product of moves and averages, and mean square of these.
+	std::vector<Eigen::Array2d> means(positions.size());
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		averages[i] = 0.5 * (averages[i] + wider[i]);
+		means[i] = averages[i] * Eigen::Array2d(moves.lengths[i], averages[i]);
+	});
+	average(workspace, COMMON_AVERAGES, means);
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		const double common = means[i][0] - NOISE_IN_PRODUCT;
+		if (!(common > 0) || workspace.mesh.is_fixed(static_cast<Index>(i)))
+			return;
+		const double gain = std::min(LARGEST_GAIN, common / means[i][1]);
+		const double certainty = way_between(CHANCE, CERTAIN, gain * common);
+		positions[i] += certainty * gain * averages[i] * sigma * moves.normals[i];
+	});
 }
 
 // The share of a variance that noise of another does not account for.
@@ -103,11 +170,15 @@ void give_back(
 void give_back_detail(
 	const Workspace& workspace, double sigma, double most, std::vector<Point>& positions)
 {
-	const double variance = sigma * sigma;
-	std::vector<double> squares = squared_moves(workspace, LARGEST * variance, positions);
-	average(workspace, AVERAGES, squares);
+	std::vector<Point> given = positions;
+	give_back_common(workspace, sigma, given);
+	std::vector<double> squares = moves_along_normals(workspace, sigma, given).lengths;
+	for (double& move : squares)
+		move *= move;
+	average(workspace, SQUARE_AVERAGES, squares);
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		give_back(workspace, i, most * share_of_detail(variance, squares[i]), positions);
+		give_back(workspace, i, share_of_detail(1, squares[i]), given);
+		positions[i] += most * (given[i] - positions[i]);
 	});
 }
 

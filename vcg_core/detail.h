@@ -7,14 +7,20 @@
 
 namespace orthopoly {
 
-/// Gives back the detail that denoising took along with the noise.
+/// Gives back the detail that denoising took along with the noise, in two steps.
 ///
-/// Where vertices within a few rings have been moved along their normals further than the noise
-/// accounts for, the surface has detail there that the denoised one has not. Vertices go that share
-/// of the way back to where they were measured (the workspace's mesh) which is not noise: one less
-/// the noise variance, with a margin, over the mean square of the moves, as a Wiener filter has it.
+/// Noise moves each vertex by itself. What the moves of vertices along their normals have in common
+/// with those around them is detail, however small, and so are averages of them, as far as they go
+/// together with the moves themselves: vertices go back along these averages (smoothing what was
+/// taken and adding it, Tukey 1977, "twicing") by the gain that leaves the least mean square within
+/// a few rings. Edges take no part, along which vertices slide.
 ///
-/// @param sigma     standard deviation of the noise along the normal, the caller's length unit
+/// Where moves then are still further than the noise accounts for, the surface has detail as small
+/// as its triangles. Vertices go that share of the way back to where they were measured (the
+/// workspace's mesh) which is not noise: one less the noise variance, with a margin, over the mean
+/// square of the moves, as a Wiener filter has it.
+///
+/// @param sigma     standard deviation of the noise along the normal, the caller's length unit; > 0
 /// @param most      share of the way at most, 0 to 1
 /// @param positions #V denoised, moved in place; fixed vertices stay bit for bit
 ///

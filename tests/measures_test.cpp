@@ -3,8 +3,8 @@
 
 #include "defects.h"
 #include "errors.h"
-#include "noise.h"
 #include "shapes.h"
+#include "step_fixture.h"
 #include "test_support.h"
 
 #include <Eigen/Geometry>
@@ -27,14 +27,6 @@ TriangleMesh tilted_square(double degrees)
 	const Eigen::AngleAxisd turn(degrees / 180 * PI, Point::UnitX());
 	for (Point& point : mesh.positions)
 		point = turn * point;
-	return mesh;
-}
-
-TriangleMesh noisy(TriangleMesh mesh, double sigma)
-{
-	NoiseOptions options;
-	options.sigma = sigma;
-	mesh.positions = add_noise(mesh, options);
 	return mesh;
 }
 
@@ -65,6 +57,21 @@ TEST_CASE("eq. 14 on faces turned by a known angle", "[measures]")
 	CHECK(measures.folded_faces == (degrees > 90 ? 2 : 0));
 	REQUIRE(measures.face_angles.size() == 2);
 	CHECK(measures.face_angles[1] == Approx(degrees).epsilon(1e-9));
+}
+
+TEST_CASE("folds of the reference are told from those of the mesh", "[measures]")
+{
+	const TriangleMesh flat = make_flat_grid(10);
+	TriangleMesh folded = flat;
+	// Pulled across the far sides of its faces.
+	folded.positions[5 * 11 + 5].x() += 0.15;
+	const ErrorMeasures against_folded = measure(flat, folded);
+	CHECK(against_folded.folded_faces > 0);
+	CHECK(against_folded.folded_in_reference == against_folded.folded_faces);
+	const ErrorMeasures of_folded = measure(folded, flat);
+	CHECK(of_folded.folded_faces == against_folded.folded_faces);
+	CHECK(of_folded.folded_in_reference == 0);
+	CHECK(measure(folded, folded).folded_in_reference == 0);
 }
 
 TEST_CASE("eq. 14 is the mean of squares, not the square of the mean", "[measures]")

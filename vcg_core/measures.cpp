@@ -3,10 +3,12 @@
 
 #include "errors.h"
 #include "execution.h"
+#include "workspace.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -84,6 +86,7 @@ public:
 	{
 		measure_vertices();
 		measure_faces();
+		count_folded_in_reference();
 		return std::move(measures_);
 	}
 
@@ -153,6 +156,19 @@ private:
 		if (measures_.measured_faces > measures_.folded_faces)
 			measures_.msae_without_folded = (squared_sum - folded_squared_sum) /
 											(measures_.measured_faces - measures_.folded_faces);
+	}
+
+	void count_folded_in_reference()
+	{
+		if (measures_.folded_faces == 0 || !measures_.paired_by_index)
+			return;
+		const TriangleMesh& mesh = reference_.mesh;
+		const std::vector<std::uint8_t> folded =
+			folded_faces(mesh.positions, Workspace(mesh, execution_));
+		for (std::size_t i = 0; i < folded.size(); ++i) {
+			if (folded[i] != 0 && measures_.face_angles[i] > 90)
+				++measures_.folded_in_reference;
+		}
 	}
 
 	// Zero where the face has no pair.

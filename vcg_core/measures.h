@@ -25,6 +25,9 @@ struct ErrorMeasures {
 	double max_distance = 0;
 	/// Faces whose normal is more than 90 degrees away from its pair's.
 	Index folded_faces = 0;
+	/// Those of them whose pair is folded over against its own surroundings: the reference's doing.
+	/// Zero where faces are not paired by index.
+	Index folded_in_reference = 0;
 	/// Faces that were measured: pairs in which both have an area.
 	Index measured_faces = 0;
 	/// True where face i was paired with face i of the reference, false where each centroid was

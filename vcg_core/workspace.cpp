@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "workspace.h"
 
-#include <numeric>
+#include <algorithm>
 
 namespace orthopoly {
 
@@ -60,10 +60,11 @@ double mean_edge_length(const Workspace& workspace, const std::vector<Point>& po
 	return sum / (3.0 * static_cast<double>(faces.size()));
 }
 
-Index count_folded_faces(const std::vector<Point>& positions, const Workspace& workspace)
+std::vector<std::uint8_t>
+folded_faces(const std::vector<Point>& positions, const Workspace& workspace)
 {
 	std::vector<RingCollector> rings = workspace.ring_collectors();
-	std::vector<Index> counts(rings.size(), 0);
+	std::vector<std::uint8_t> flags(workspace.mesh.faces.size(), 0);
 	workspace.execution.parallel_for(
 		workspace.mesh.face_count(), GRAIN, [&](Index begin, Index end, int worker) {
 			const auto cross = [&](Index face) {
@@ -77,11 +78,16 @@ Index count_folded_faces(const std::vector<Point>& positions, const Workspace& w
 				Point around = Point::Zero();
 				for (std::size_t k = 1; k < ring.faces().size(); ++k)
 					around += cross(ring.faces()[k]);
-				if (cross(i).dot(around) < 0)
-					++counts[static_cast<std::size_t>(worker)];
+				flags[static_cast<std::size_t>(i)] = cross(i).dot(around) < 0 ? 1 : 0;
 			}
 		});
-	return std::accumulate(counts.begin(), counts.end(), Index(0));
+	return flags;
+}
+
+Index count_folded_faces(const std::vector<Point>& positions, const Workspace& workspace)
+{
+	const std::vector<std::uint8_t> flags = folded_faces(positions, workspace);
+	return static_cast<Index>(std::count(flags.begin(), flags.end(), 1));
 }
 
 } // namespace orthopoly

@@ -47,8 +47,11 @@ double mean_edge_square_around(
 FaceGeometry face_geometry(const Workspace& workspace, const std::vector<Point>& positions);
 double mean_edge_length(const Workspace& workspace, const std::vector<Point>& positions);
 
-/// Faces that are folded over: their normal is more than 90 degrees away from the area-weighted
-/// mean normal of the faces around them (those that share a vertex, themselves left out).
+/// #F flags of the faces that are folded over: their normal is more than 90 degrees away from the
+/// area-weighted mean normal of the faces around them (those that share a vertex, themselves left
+/// out).
+std::vector<std::uint8_t>
+folded_faces(const std::vector<Point>& positions, const Workspace& workspace);
 Index count_folded_faces(const std::vector<Point>& positions, const Workspace& workspace);
 
 } // namespace orthopoly

@@ -117,6 +117,7 @@ Json to_json(const ErrorMeasures& measures)
 		{"relative_vertex_error", measures.relative_vertex_error},
 		{"max_distance", measures.max_distance},
 		{"folded_faces", measures.folded_faces},
+		{"folded_in_reference", measures.folded_in_reference},
 		{"measured_faces", measures.measured_faces},
 		{"paired_by_index", measures.paired_by_index},
 	};
@@ -159,6 +160,8 @@ void print_measures(const std::vector<const ErrorMeasures*>& columns)
 		{"largest distance", [](const ErrorMeasures& m) { return m.max_distance; }},
 		{"folded faces",
 		 [](const ErrorMeasures& m) { return static_cast<double>(m.folded_faces); }},
+		{"of these, in the truth",
+		 [](const ErrorMeasures& m) { return static_cast<double>(m.folded_in_reference); }},
 	};
 	for (const Row& row : rows) {
 		std::cout << "  " << std::left << std::setw(24) << row.label << std::right;

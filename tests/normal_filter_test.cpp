@@ -63,6 +63,18 @@ std::vector<Point> scattered(std::vector<Point> normals, double degrees)
 	return normals;
 }
 
+// A flat grid bent along its middle: two halves at 40 degrees to each other.
+TriangleMesh make_roof(int n)
+{
+	TriangleMesh mesh = make_flat_grid(n);
+	for (Point& p : mesh.positions) {
+		const double x = p.x() - 0.5;
+		if (x > 1e-9)
+			p = Point(0.5 + x * std::cos(40 * DEGREE), p.y(), -x * std::sin(40 * DEGREE));
+	}
+	return mesh;
+}
+
 } // namespace
 
 TEST_CASE("Normals of a plane come back exactly", "[normal_filter]")
@@ -153,15 +165,7 @@ TEST_CASE("What lies across an edge changes no bit", "[normal_filter]")
 
 TEST_CASE("A bend beyond the threshold is kept, one within is taken along", "[normal_filter]")
 {
-	// Two flat halves at 40 degrees to each other.
-	TriangleMesh mesh = make_flat_grid(20);
-	mesh.positions = each(mesh.positions, [](const Point& p) {
-		const double x = p.x() - 0.5;
-		return x <= 1e-9 ?
-				   p :
-				   Point(0.5 + x * std::cos(40 * DEGREE), p.y(), -x * std::sin(40 * DEGREE));
-	});
-	const StepFixture f(mesh);
+	const StepFixture f(make_roof(20));
 	const auto largest_change = [&](double cosine) {
 		NormalFilterOptions options = rings(3, 3);
 		options.cos_threshold = cosine;
@@ -192,14 +196,7 @@ TEST_CASE(
 	};
 	const StepFixture sphere(make_sphere(600));
 	CHECK(angle(sphere, loose) < 0.8 * angle(sphere, strict));
-	TriangleMesh roof = make_flat_grid(24);
-	roof.positions = each(roof.positions, [](const Point& p) {
-		const double x = p.x() - 0.5;
-		return x <= 1e-9 ?
-				   p :
-				   Point(0.5 + x * std::cos(40 * DEGREE), p.y(), -x * std::sin(40 * DEGREE));
-	});
-	const StepFixture edge(roof);
+	const StepFixture edge(make_roof(24));
 	CHECK(angle(edge, loose) < 1.1 * angle(edge, strict));
 }
 

@@ -21,12 +21,13 @@ constexpr double LARGEST_MOVE = 3;
 // moves around a vertex have in common: together a mean over some two hundred vertices.
 constexpr int COMMON_AVERAGES = 40;
 
-// Mean product of a move and the average of those around it where they are noise: what a vertex
-// counts in its own average.
+// Mean product of a move and the average of those around it where they are noise: what a vertex of
+// six faces counts in its own average, a third where it is taken once and 0.185 where twice.
 constexpr double NOISE_IN_PRODUCT = 0.26;
 
 // Part of the noise variance by which going back along the averages would lower the mean square of
-// the moves, up to which that is taken for chance, and from which for detail.
+// the moves, up to which that is taken for chance, and from which for detail. Of vertices in noise
+// alone one in two hundred is beyond the first.
 constexpr double CHANCE = 0.05;
 constexpr double CERTAIN = 0.14;
 
@@ -177,6 +178,8 @@ void give_back_detail(
 		move *= move;
 	average(workspace, SQUARE_AVERAGES, squares);
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		if (workspace.mesh.is_fixed(static_cast<Index>(i)))
+			return;
 		give_back(workspace, i, share_of_detail(1, squares[i]), given);
 		positions[i] += most * (given[i] - positions[i]);
 	});

@@ -69,8 +69,8 @@ std::size_t at(Index index)
 struct Moves {
 	/// Back along the normals, as far as they count: #V; zero where there is no normal.
 	std::vector<double> lengths;
-	/// #V of length one, or zero.
-	std::vector<Point> normals;
+	/// #V sums of the cross products around, along the normals; zero where there is none.
+	std::vector<Point> crosses;
 };
 
 Moves moves_along_normals(
@@ -84,9 +84,9 @@ Moves moves_along_normals(
 		const double length = cross.norm();
 		if (!(length > 0))
 			return;
-		moves.normals[i] = cross / length;
-		const double move =
-			(workspace.mesh.positions[i] - positions[i]).dot(moves.normals[i]) / sigma;
+		moves.crosses[i] = cross;
+		const Point normal = cross / length;
+		const double move = (workspace.mesh.positions[i] - positions[i]).dot(normal) / sigma;
 		moves.lengths[i] = std::max(-LARGEST_MOVE, std::min(LARGEST_MOVE, move));
 	});
 	return moves;
@@ -125,8 +125,7 @@ void give_back_common(const Workspace& workspace, double sigma, std::vector<Poin
 	Moves moves = moves_along_normals(workspace, sigma, positions);
 	const std::vector<double> areas = areas_around(workspace, positions);
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		const Point cross = cross_product_around(workspace, positions, static_cast<Index>(i));
-		if (cross.norm() < EDGE * areas[i])
+		if (moves.crosses[i].norm() < EDGE * areas[i])
 			moves.lengths[i] = 0;
 	});
 	// Averaged once and twice, half of each: detail is narrow where there is little noise, and as
@@ -148,7 +147,7 @@ void give_back_common(const Workspace& workspace, double sigma, std::vector<Poin
 			return;
 		const double gain = std::min(LARGEST_GAIN, common / means[i][1]);
 		const double certainty = way_between(CHANCE, CERTAIN, gain * common);
-		positions[i] += certainty * gain * averages[i] * sigma * moves.normals[i];
+		positions[i] += certainty * gain * averages[i] * sigma * moves.crosses[i].normalized();
 	});
 }
 

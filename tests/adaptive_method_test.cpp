@@ -3,6 +3,7 @@
 
 #include "measures.h"
 #include "method_support.h"
+#include "noise_level.h"
 #include "prefilter.h"
 #include "recipes.h"
 
@@ -377,6 +378,38 @@ TEST_CASE("A clean mesh stays as it is", "[adaptive_method]")
 		const TriangleMesh mesh = find_recipe(name).make(2000);
 		CHECK(same_bits(run(mesh).positions, mesh.positions));
 	}
+}
+
+TEST_CASE("Ridges as narrow as the triangles are no noise", "[adaptive_method]")
+{
+	// Grooves three edges apart all over a sphere, which polynomials over whole rings do not
+	// follow.
+	TriangleMesh truth = make_sphere(8000);
+	const double edge = mean_edge_length(truth.positions, truth.faces);
+	for (Point& p : truth.positions) {
+		const double along = p.x() + 2 * p.y() + p.z();
+		p += 0.2 * edge * std::sin(2 * std::acos(-1.0) * along / (3 * edge)) * p.normalized();
+	}
+	CHECK(estimate_noise_level(StepFixture(truth).workspace, truth.positions) > 0.05);
+	CHECK(run(truth).status == Status::NothingToDo);
+	CHECK(same_bits(run(truth).positions, truth.positions));
+
+	const TriangleMesh mesh = noisy(truth, 0.1);
+	const DenoiseResult result = run(mesh);
+	CHECK(result.estimated_noise == Approx(0.1).margin(0.02));
+	CHECK(result.resolved.noise_level == result.estimated_noise);
+	const ErrorMeasures before = measure(mesh, truth);
+	const ErrorMeasures after = measure(with_positions(mesh, result.positions), truth);
+	CHECK(after.mean_angle < 0.7 * before.mean_angle);
+	CHECK(after.vertex_error < 0.7 * before.vertex_error);
+
+	// The level is the mesh's, whatever is taken away; one that was set stays.
+	DenoiseOptions options;
+	options.strength = Strength::Strong;
+	CHECK(denoised(mesh, options).estimated_noise == result.estimated_noise);
+	options.strength = Strength::Normal;
+	options.noise_level = 0.15;
+	CHECK(denoised(mesh, options).resolved.noise_level == 0.15);
 }
 
 TEST_CASE("A mesh denoised before is hardly changed again", "[adaptive_method]")

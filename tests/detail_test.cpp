@@ -76,6 +76,29 @@ TEST_CASE("Detail below the noise is given back where neighbours have it in comm
 	CHECK(distance(positions, truth.positions, ridged, false) < 0.3 * sigma);
 }
 
+TEST_CASE("Ridges as narrow as the triangles are given back", "[detail]")
+{
+	// They run aslant, so that the six neighbours of a vertex together say nothing of it.
+	const TriangleMesh flat = make_flat_grid(60);
+	const double edge = mean_edge_length(flat.positions, flat.faces);
+	const double sigma = 0.15 * edge;
+	TriangleMesh truth = flat;
+	for (Point& p : truth.positions)
+		p.z() = 1.5 * sigma * std::sin(2 * std::acos(-1.0) * (p.x() + 2 * p.y()) / (5 * edge));
+	const StepFixture f(with_positions(truth, noisy(truth, 0.15).positions));
+	std::vector<Point> positions = flat.positions;
+	const TakenMoves taken = give_back_detail(f.workspace, sigma, 1, positions);
+	CHECK(taken.predicted > 0.35);
+	const std::vector<bool> everywhere(positions.size(), true);
+	CHECK(
+		distance(positions, truth.positions, everywhere, true) <
+		0.6 * distance(flat.positions, truth.positions, everywhere, true));
+	// Noise alone is not predicted.
+	const StepFixture noise(noisy(flat, 0.15));
+	positions = flat.positions;
+	CHECK(give_back_detail(noise.workspace, sigma, 1, positions).predicted < 0.1);
+}
+
 TEST_CASE("Vertices that slid along an edge are not detail", "[detail]")
 {
 	// Roofs side by side, whose ridges were moved along a side.

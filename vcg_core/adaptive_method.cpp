@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 namespace orthopoly {
@@ -127,6 +128,13 @@ constexpr int SCANNER_VERTEX_ITERATIONS = 60;
 constexpr double SCANNER_THRESHOLD = 0.6;
 constexpr double SCANNER_THRESHOLD_INCREMENT = 0.05;
 constexpr double SCANNER_SELECTION = 200;
+
+// Median share of what the method took that neighbours predict (see MovePredictor) from which it is
+// detail for a good part; noise alone and smooth surfaces leave up to 0.17. The rest is the noise,
+// worth another run where its level is by so much the lower one. It is lowered further only where
+// still less than the level was taken: at the right one the method takes what is detail on top.
+constexpr double DETAIL = 0.25;
+constexpr double WORTH_LOWERING = 0.95;
 
 // Threshold of similar directions by noise level: strict while normals can be trusted, loose enough
 // for their scatter after the prefilter beyond.
@@ -330,7 +338,8 @@ public:
 	{
 	}
 
-	void run()
+	/// Returns what it took from the vertices; nothing where noise is correlated.
+	TakenMoves run()
 	{
 		prefilter();
 		// The level is in edge lengths of the surface below the noise, which lengthens them.
@@ -366,8 +375,9 @@ public:
 				go_back(start, 1 - plan_.guiding);
 		}
 		// Noise that goes together over several edges moves vertices together as well.
-		if (plan_.correlation < 1)
-			give_back_detail(workspace_, sigma_, 1 - plan_.correlation, positions_);
+		if (plan_.correlation == 1)
+			return {};
+		return give_back_detail(workspace_, sigma_, 1 - plan_.correlation, positions_);
 	}
 
 private:
@@ -522,6 +532,61 @@ private:
 	std::vector<Point>& positions_;
 };
 
+// Runs the method for that noise, from the workspace's mesh on. Returns what it took; nothing where
+// there is too little noise to do anything.
+std::optional<TakenMoves> run_at(
+	double noise,
+	const Workspace& workspace,
+	const DenoiseOptions& options,
+	double correlation,
+	DenoiseResult& result,
+	std::vector<Point>& positions)
+{
+	const Plan plan = plan_for(options, noise, correlation);
+	record(plan, result.resolved);
+	const bool nothing = options.noise_type != NoiseType::Scanner && noise < LEAST_NOISE;
+	result.status = nothing ? DenoiseResult::Status::NothingToDo : DenoiseResult::Status::Done;
+	result.iterations_done = nothing ? 0 : plan.iterations;
+	if (nothing)
+		return std::nullopt;
+	positions = workspace.mesh.positions;
+	return AdaptiveMethod(workspace, plan, positions).run();
+}
+
+// Runs the method at the estimated level or the one that is set; where what an estimate takes
+// proves to be detail for a good part, again at the level of the rest.
+void lower_and_run(
+	const Workspace& workspace,
+	const DenoiseOptions& options,
+	double correlation,
+	DenoiseResult& result,
+	std::vector<Point>& positions)
+{
+	const double strength = strength_factor(options.strength);
+	const auto run = [&](double noise) {
+		return run_at(noise, workspace, options, correlation, result, positions);
+	};
+	std::optional<TakenMoves> taken = run(strength * *result.resolved.noise_level);
+	if (options.noise_level || correlation > 0 || !taken || taken->predicted < DETAIL)
+		return;
+	// The level is the same at any strength.
+	double& level = result.estimated_noise;
+	if (strength != 1)
+		taken = run(level);
+	for (int round = 0; taken && taken->predicted > DETAIL; ++round) {
+		const double left = std::sqrt(taken->square * (1 - taken->predicted));
+		if (left > WORTH_LOWERING || (round > 0 && taken->square > 1))
+			break;
+		level *= left;
+		taken = run(level);
+	}
+	if (strength != 1)
+		taken = run(strength * level);
+	result.resolved.noise_level = level;
+	if (!taken)
+		positions = workspace.mesh.positions;
+}
+
 } // namespace
 
 void run_adaptive_method(
@@ -545,29 +610,21 @@ void run_adaptive_method(
 	result.estimated_noise = between(level, outliers.level, outliers.share);
 	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
 	result.resolved.noise_type = correlation > 0.5 ? NoiseType::Scanner : NoiseType::White;
-	const double noise = *result.resolved.noise_level * strength_factor(options.strength);
-	const Plan plan = plan_for(options, noise, correlation);
-	record(plan, result.resolved);
-	if (options.noise_type != NoiseType::Scanner && noise < LEAST_NOISE) {
-		result.status = DenoiseResult::Status::NothingToDo;
+	if (outliers.share == 0) {
+		lower_and_run(workspace, options, correlation, result, positions);
 		return;
 	}
-	if (outliers.share > 0) {
-		positions = outliers.positions;
-		TriangleMesh mesh = workspace.mesh;
-		mesh.positions = outliers.positions;
-		const Workspace repaired(mesh, workspace.execution);
-		AdaptiveMethod(repaired, plan, positions).run();
-		give_back_inliers(
-			repaired,
-			outliers.left * workspace.mean_edge_length,
-			outliers.share * way_between(MANY_OUTLIERS, FEW_OUTLIERS, outliers.found),
-			positions);
-	}
-	else {
-		AdaptiveMethod(workspace, plan, positions).run();
-	}
-	result.iterations_done = plan.iterations;
+	const double noise = *result.resolved.noise_level * strength_factor(options.strength);
+	TriangleMesh mesh = workspace.mesh;
+	mesh.positions = outliers.positions;
+	const Workspace repaired(mesh, workspace.execution);
+	if (!run_at(noise, repaired, options, correlation, result, positions))
+		return;
+	give_back_inliers(
+		repaired,
+		outliers.left * workspace.mean_edge_length,
+		outliers.share * way_between(MANY_OUTLIERS, FEW_OUTLIERS, outliers.found),
+		positions);
 }
 
 } // namespace orthopoly

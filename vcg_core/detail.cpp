@@ -3,6 +3,7 @@
 
 #include "interpolation.h"
 #include "local_heights.h"
+#include "move_prediction.h"
 #include "sampling.h"
 
 #include <Eigen/Core>
@@ -38,6 +39,17 @@ constexpr double LARGEST_GAIN = 1.5;
 // Those slide along it, which no normal of theirs tells.
 constexpr double EDGE = 0.85;
 
+// Median share of the moves' variance that their neighbours predict, from which there are ridges or
+// grooves as narrow as the triangles all over the mesh, and are for certain. Noise alone and smooth
+// surfaces leave up to 0.17; a median over so many vertices is steady.
+constexpr double RIDGED = 0.2;
+constexpr double SURELY_RIDGED = 0.35;
+constexpr Index PREDICTIONS = 2000;
+
+// The same of a vertex's surroundings, on a mesh that has them.
+constexpr double RIDGE_BEGINS = 0.1;
+constexpr double RIDGE = 0.3;
+
 // Averages of the squared moves: together a mean over some forty vertices, which noise alone makes
 // vary by a quarter.
 constexpr int SQUARE_AVERAGES = 8;
@@ -64,14 +76,6 @@ std::size_t at(Index index)
 {
 	return static_cast<std::size_t>(index);
 }
-
-/// How vertices were moved from where they were measured, in deviations of the noise.
-struct Moves {
-	/// Back along the normals, as far as they count: #V; zero where there is no normal.
-	std::vector<double> lengths;
-	/// #V sums of the cross products around, along the normals; zero where there is none.
-	std::vector<Point> crosses;
-};
 
 Moves moves_along_normals(
 	const Workspace& workspace, double sigma, const std::vector<Point>& positions)
@@ -119,8 +123,9 @@ void average(const Workspace& workspace, int times, std::vector<Value>& values)
 	}
 }
 
-// Takes vertices back along what their moves have in common with those around them.
-void give_back_common(const Workspace& workspace, double sigma, std::vector<Point>& positions)
+// The same without those of vertices on edges.
+Moves moves_beside_edges(
+	const Workspace& workspace, double sigma, const std::vector<Point>& positions)
 {
 	Moves moves = moves_along_normals(workspace, sigma, positions);
 	const std::vector<double> areas = areas_around(workspace, positions);
@@ -128,6 +133,13 @@ void give_back_common(const Workspace& workspace, double sigma, std::vector<Poin
 		if (moves.crosses[i].norm() < EDGE * areas[i])
 			moves.lengths[i] = 0;
 	});
+	return moves;
+}
+
+// Takes vertices back along what their moves have in common with those around them.
+void give_back_common(const Workspace& workspace, double sigma, std::vector<Point>& positions)
+{
+	const Moves moves = moves_beside_edges(workspace, sigma, positions);
 	// Averaged once and twice, half of each: detail is narrow where there is little noise, and as
 	// wide as the fits where these are blurred by more.
 	std::vector<double> averages = moves.lengths;
@@ -151,6 +163,58 @@ void give_back_common(const Workspace& workspace, double sigma, std::vector<Poin
 	});
 }
 
+// What the neighbours of some vertices predict of their moves.
+std::vector<PredictedMove> predict_moves(
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const Moves& moves,
+	const std::vector<Index>& vertices)
+{
+	const std::vector<MovePredictor::DirectedMoves> directed =
+		MovePredictor::directed_moves(workspace, positions, moves.lengths);
+	std::vector<MovePredictor> predictors(
+		static_cast<std::size_t>(workspace.execution.threads()),
+		MovePredictor(workspace, moves, directed));
+	std::vector<PredictedMove> result(vertices.size());
+	workspace.execution.parallel_for(
+		static_cast<Index>(vertices.size()), GRAIN, [&](Index begin, Index end, int worker) {
+			for (Index i = begin; i < end; ++i)
+				result[at(i)] =
+					predictors[static_cast<std::size_t>(worker)].predict(vertices[at(i)]);
+		});
+	return result;
+}
+
+// Takes vertices back as far as their neighbours predict it, on a mesh that has ridges.
+TakenMoves give_back_ridges(const Workspace& workspace, double sigma, std::vector<Point>& positions)
+{
+	const Moves moves = moves_beside_edges(workspace, sigma, positions);
+	const std::vector<Index> sample =
+		sample_by_value(areas_around(workspace, positions), PREDICTIONS);
+	std::vector<double> shares;
+	std::vector<double> squares;
+	for (const PredictedMove& predicted : predict_moves(workspace, positions, moves, sample)) {
+		shares.push_back(predicted.share);
+		squares.push_back(predicted.square);
+	}
+	const TakenMoves taken = {quantile(squares, 0.5), quantile(shares, 0.5)};
+	const double ridged = way_between(RIDGED, SURELY_RIDGED, taken.predicted);
+	if (ridged == 0)
+		return taken;
+	std::vector<Index> all;
+	for (Index i = 0; i < workspace.mesh.vertex_count(); ++i) {
+		if (moves.lengths[at(i)] != 0 && !workspace.mesh.is_fixed(i))
+			all.push_back(i);
+	}
+	const std::vector<PredictedMove> predicted = predict_moves(workspace, positions, moves, all);
+	workspace.execution.for_each(static_cast<Index>(all.size()), [&](std::size_t k) {
+		const double certainty = ridged * way_between(RIDGE_BEGINS, RIDGE, predicted[k].share);
+		positions[at(all[k])] +=
+			certainty * predicted[k].length * sigma * moves.crosses[at(all[k])].normalized();
+	});
+	return taken;
+}
+
 // The share of a variance that noise of another does not account for.
 double share_of_detail(double noise, double variance)
 {
@@ -167,11 +231,12 @@ void give_back(
 
 } // namespace
 
-void give_back_detail(
+TakenMoves give_back_detail(
 	const Workspace& workspace, double sigma, double most, std::vector<Point>& positions)
 {
 	std::vector<Point> given = positions;
 	give_back_common(workspace, sigma, given);
+	const TakenMoves taken = give_back_ridges(workspace, sigma, given);
 	std::vector<double> squares = moves_along_normals(workspace, sigma, given).lengths;
 	for (double& move : squares)
 		move *= move;
@@ -182,6 +247,7 @@ void give_back_detail(
 		give_back(workspace, i, share_of_detail(1, squares[i]), given);
 		positions[i] += most * (given[i] - positions[i]);
 	});
+	return taken;
 }
 
 void give_back_inliers(

@@ -7,13 +7,25 @@
 
 namespace orthopoly {
 
-/// Gives back the detail that denoising took along with the noise, in two steps.
+/// What denoising took from the vertices, along their normals.
+struct TakenMoves {
+	/// Median over the vertices of the mean square around each, in noise variances.
+	double square = 0;
+	/// And of the share of the variance that neighbours predict (see MovePredictor): detail, but
+	/// for a little that is chance.
+	double predicted = 0;
+};
+
+/// Gives back the detail that denoising took along with the noise, in three steps.
 ///
 /// Noise moves each vertex by itself. What the moves of vertices along their normals have in common
 /// with those around them is detail, however small, and so are averages of them, as far as they go
 /// together with the moves themselves: vertices go back along these averages (smoothing what was
 /// taken and adding it, Tukey 1977, "twicing") by the gain that leaves the least mean square within
 /// a few rings. Edges take no part, along which vertices slide.
+///
+/// Where most of a mesh has ridges or grooves as narrow as its triangles, vertices go back as far
+/// as their neighbours predict it.
 ///
 /// Where moves then are still further than the noise accounts for, the surface has detail as small
 /// as its triangles. Vertices go that share of the way back to where they were measured (the
@@ -24,8 +36,9 @@ namespace orthopoly {
 /// @param most      share of the way at most, 0 to 1
 /// @param positions #V denoised, moved in place; fixed vertices stay bit for bit
 ///
-/// O(#V); the same bits on any number of threads. Throws Cancelled.
-void give_back_detail(
+/// Returns what was taken, ridges and grooves included. O(#V); the same bits on any number of
+/// threads. Throws Cancelled.
+TakenMoves give_back_detail(
 	const Workspace& workspace, double sigma, double most, std::vector<Point>& positions);
 
 /// The same where outliers made the noise, so that the other vertices were never off: those that

@@ -258,7 +258,7 @@ TEST_CASE("What is set is taken, the estimate told all the same", "[adaptive_met
 	CHECK(same_bits(none.positions, mesh.positions));
 }
 
-TEST_CASE("The strength dial turns one way", "[adaptive_method]")
+TEST_CASE("The strength dial turns one way", "[adaptive_method][slow]")
 {
 	const std::string name = GENERATE("sphere", "torus", "part");
 	const double sigma = GENERATE(0.1, 0.25);

@@ -126,7 +126,7 @@ std::vector<std::pair<std::string, TriangleMesh>> mesh_classes()
 
 } // namespace
 
-TEST_CASE("noise on every kind of surface is reduced", "[denoise]")
+TEST_CASE("noise on every kind of surface is reduced", "[denoise][slow]")
 {
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
 	const std::string name = GENERATE("cube", "sphere", "torus", "part", "height_field");
@@ -338,7 +338,7 @@ TEST_CASE("the result is the same bit for bit on any number of threads", "[denoi
 	CHECK(same_bits(run(mesh, options).positions, one.positions));
 }
 
-TEST_CASE("the size of the mesh does not matter", "[denoise]")
+TEST_CASE("the size of the mesh does not matter", "[denoise][slow]")
 {
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
 	const TriangleMesh truth = make_part(3000);

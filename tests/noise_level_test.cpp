@@ -38,7 +38,8 @@ double true_level(const TriangleMesh& clean, const TriangleMesh& mesh)
 
 } // namespace
 
-TEST_CASE("The noise is estimated on every surface, of every kind and strength", "[noise_level]")
+TEST_CASE(
+	"The noise is estimated on every surface, of every kind and strength", "[noise_level][slow]")
 {
 	const std::string name = GENERATE("cube", "sphere", "torus", "part", "height_field");
 	const auto direction =

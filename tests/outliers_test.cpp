@@ -59,7 +59,7 @@ TEST_CASE("Outliers are found and put back", "[outliers]")
 	CHECK(measure(with_positions(mesh, found.positions), truth).mean_angle < 0.6 * before);
 }
 
-TEST_CASE("Noise of all vertices has no outliers worth the name", "[outliers]")
+TEST_CASE("Noise of all vertices has no outliers worth the name", "[outliers][slow]")
 {
 	const std::string name = GENERATE("cube", "sphere", "part", "height_field");
 	const auto direction =

@@ -25,6 +25,8 @@ if(ORTHOPOLY_SANITIZE)
 	# As an option each (a list), so that -DORTHOPOLY_SANITIZE=address,undefined stays one argument.
 	add_compile_options(
 		-fsanitize=${ORTHOPOLY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g1
+		# What these two find the address sanitizer finds as well; compiling takes half as long without.
+		-fno-sanitize=null,object-size
 		# The instrumented code misleads it.
 		-Wno-maybe-uninitialized)
 	add_link_options(-fsanitize=${ORTHOPOLY_SANITIZE})

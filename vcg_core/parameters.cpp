@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parameters.h"
 
+#include "number_text.h"
+
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <locale>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 
@@ -83,23 +83,6 @@ ParameterInfo advanced(ParameterInfo info)
 {
 	info.advanced = true;
 	return info;
-}
-
-// Numbers read and written the same in every locale.
-std::string number_text(double value)
-{
-	std::ostringstream text;
-	text.imbue(std::locale::classic());
-	text << value;
-	return text.str();
-}
-
-bool read_number(const std::string& text, double& value)
-{
-	std::istringstream stream(text);
-	stream.imbue(std::locale::classic());
-	stream >> value;
-	return !stream.fail() && (stream >> std::ws).eof();
 }
 
 std::string accepted_values(const ParameterInfo& info)
@@ -215,8 +198,10 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"noise_level",
 					"Noise level (-1: automatic)",
 					"Standard deviation of the noise along the surface normal, in mean edge lengths, "
-					"0 to 2. -1 estimates it from the mesh. More smooths more, less keeps more "
-					"detail. Set it where the estimate in the log is wrong. Adaptive method only."))),
+					"0 to 2. -1 estimates it from the vertices that may move, and does nothing where "
+					"that is below 0.025; a level that is set is used however small. More smooths "
+					"more, less keeps more detail. Set it where the estimate in the log is wrong. "
+					"Adaptive method only."))),
 		bind(
 			&Options::iterations,
 			within(
@@ -234,7 +219,7 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 			boolean(
 				"keep_boundary",
 				"Keep boundary vertices",
-				"Vertices on open boundaries stay exactly where they are. Use it where the mesh must "
+				"Vertices on open edges, which belong to one face only, stay exactly where they are. Use it where the mesh must "
 				"still fit its neighbour; the noise on the boundary then stays too.")),
 		bind(
 			&Options::vertex_iterations,
@@ -259,7 +244,8 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"structure_ring",
 					"Structure ring R (-1: automatic)",
 					"Rings of faces searched for similar structures, 1 to 10. The adaptive method "
-					"tries smaller ones too and takes the best for each face; in the paper's method it "
+					"tries smaller ones too and takes the best for each face, and goes some rings "
+					"further for heights; in the paper's method it "
 					"may not be less than the guide ring, and automatic is one more. More averages "
 					"over a wider surrounding and takes longer (with the square of it).")))),
 		bind(
@@ -272,9 +258,9 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"cos_threshold",
 					"Similarity threshold, cosine (-1: automatic)",
 					"Directions whose cosine is above this count as similar, up to 1. Paper: 0.7 to "
-					"0.9 for little noise, 0.5 to 0.65 for much. The adaptive method tries a lower one "
-					"(by 0.25) too, and takes the better for each face. More keeps shallower edges, "
-					"less removes more noise.")))),
+					"0.9 for little noise, 0.5 to 0.65 for much. The adaptive method uses it for "
+					"normals only, and up to 0.95; it tries a lower one (by 0.25) too, and takes the "
+					"better for each face. More keeps shallower edges, less removes more noise.")))),
 		bind(
 			&Options::cos_threshold_increment,
 			advanced(within(

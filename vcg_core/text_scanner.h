@@ -1,25 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <charconv>
+#include "number_text.h"
+
 #include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace orthopoly {
-
-/// Reads a number that fills the whole token, the same in every locale. False where it does not.
-template<class Number>
-bool read_number(std::string_view token, Number& number)
-{
-	// What from_chars leaves out of the C library's grammar, some programs write.
-	if (token.size() > 1 && token.front() == '+')
-		token.remove_prefix(1);
-	const char* end = token.data() + token.size();
-	const std::from_chars_result result = std::from_chars(token.data(), end, number);
-	return result.ec == std::errc() && result.ptr == end;
-}
 
 /// Goes through a text line by line and cuts each line into words. Blank lines and what follows a
 /// '#' are left out.

@@ -62,17 +62,17 @@ void NoiseFilter::apply(FilterRun& run) const
 	for (std::size_t i = 0; i < positions.size(); ++i) {
 		const double distance = (positions[i] - arrays.mesh.positions[i]).norm();
 		moved += distance > 0 ? 1 : 0;
-		sum += distance * distance;
+		sum += distance;
 		largest = std::max(largest, distance);
 	}
-	const double mean = std::sqrt(sum / static_cast<double>(positions.size()));
+	const double mean = sum / static_cast<double>(positions.size());
 	const double edge = mean_edge_length(arrays.mesh.positions, arrays.mesh.faces);
 	if (moved > 0)
 		write_current_layer(run, arrays, positions);
 	run.log(
 		"moved " + std::to_string(moved) + " of " +
 		count_of(arrays.mesh.vertex_count(), "vertex", "vertices") + " by " + in_words(mean) +
-		" (root mean square), " + in_words(largest) + " at most; the mean edge length was " +
+		" (mean of all), " + in_words(largest) + " at most; the mean edge length was " +
 		in_words(edge));
 	run.outputs = {
 		{"moved_vertices", static_cast<int>(moved)},

@@ -16,11 +16,6 @@ namespace {
 
 constexpr double PI = 3.14159265358979323846;
 
-std::size_t at(int index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 int at_least(int minimum, double value)
 {
 	return std::max(minimum, static_cast<int>(std::lround(value)));

@@ -258,6 +258,66 @@ TEST_CASE("What is set is taken, the estimate told all the same", "[adaptive_met
 	CHECK(same_bits(none.positions, mesh.positions));
 }
 
+TEST_CASE("A level that is set is used, however small", "[adaptive_method]")
+{
+	const TriangleMesh truth = make_part(3000);
+	const TriangleMesh mesh = noisy(truth, 0.015);
+	CHECK(run(mesh).status == Status::NothingToDo);
+	DenoiseOptions options;
+	options.noise_level = 0.03;
+	options.strength = Strength::Gentle;
+	const DenoiseResult result = denoised(mesh, options);
+	CHECK(result.status == Status::Done);
+	CHECK(
+		measure(with_positions(mesh, result.positions), truth).mean_angle <
+		0.8 * measure(mesh, truth).mean_angle);
+	options.noise_level = 0;
+	CHECK(denoised(mesh, options).status == Status::NothingToDo);
+	options.noise_level = 1e-5;
+	CHECK(denoised(mesh, options).status == Status::Done);
+}
+
+TEST_CASE("The noise is read off the vertices that may move", "[adaptive_method]")
+{
+	// A clean mesh with a noisy part, and a noisy one with a clean part, a sixth each.
+	const TriangleMesh truth = make_part(12000);
+	const TriangleMesh noise = noisy(truth, 0.2);
+	for (const bool clean_part : {false, true}) {
+		CAPTURE(clean_part);
+		TriangleMesh mesh = truth;
+		mesh.fixed.assign(mesh.positions.size(), 0);
+		for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+			const bool in_part = i < mesh.positions.size() / 6;
+			mesh.fixed[i] = in_part ? 0 : 1;
+			if (in_part != clean_part)
+				mesh.positions[i] = noise.positions[i];
+		}
+		const DenoiseResult result = run(mesh);
+		if (clean_part) {
+			CHECK(result.status == Status::NothingToDo);
+		}
+		else {
+			CHECK(result.estimated_noise == Approx(0.2).margin(0.04));
+			CHECK(
+				measure(with_positions(mesh, result.positions), truth).mean_angle <
+				0.3 * measure(mesh, truth).mean_angle);
+		}
+	}
+}
+
+TEST_CASE("Many iterations do not bring the noise back", "[adaptive_method]")
+{
+	// Where the threshold went on rising, nobody would be similar to anybody.
+	const TriangleMesh truth = make_part(3000);
+	const TriangleMesh mesh = noisy(truth, 0.3);
+	const auto angle_of = [&](int iterations) {
+		DenoiseOptions options;
+		options.iterations = iterations;
+		return measure(with_positions(mesh, denoised(mesh, options).positions), truth).mean_angle;
+	};
+	CHECK(angle_of(9) < 1.1 * angle_of(3));
+}
+
 TEST_CASE("The strength dial turns one way", "[adaptive_method][slow]")
 {
 	const std::string name = GENERATE("sphere", "torus", "part");

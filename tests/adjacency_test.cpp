@@ -113,12 +113,29 @@ TEST_CASE("the boundary of an open mesh", "[adjacency]")
 		std::vector<std::uint8_t> {1, 1, 1, 1, 0, 1, 1, 1, 1});
 }
 
-TEST_CASE("an edge of three faces is as little an inner one as an edge of one", "[adjacency]")
+TEST_CASE("an edge of three faces is no boundary, but as irregular as one", "[adjacency]")
 {
-	const TriangleMesh mesh = make_non_manifold_edge();
-	const std::vector<std::uint8_t> flags = edge_defects(mesh).boundary;
-	// Seven vertices along the foot of the fin, seven along its top.
-	CHECK(std::count(flags.begin(), flags.end(), 1) == 14);
+	const EdgeDefects defects = edge_defects(make_non_manifold_edge());
+	// Seven vertices along the foot of the fin, seven along its top, the ends of both on the
+	// boundary.
+	CHECK(std::count(defects.irregular.begin(), defects.irregular.end(), 1) == 14);
+	CHECK(std::count(defects.boundary.begin(), defects.boundary.end(), 1) == 9);
+	TriangleMesh twice = tetrahedron();
+	twice.faces.insert(twice.faces.end(), twice.faces.begin(), twice.faces.end());
+	CHECK(edge_defects(twice).boundary == std::vector<std::uint8_t> {0, 0, 0, 0});
+	CHECK(edge_defects(twice).irregular == std::vector<std::uint8_t> {1, 1, 1, 1});
+}
+
+TEST_CASE("a face that names a vertex twice makes no edge irregular", "[adjacency]")
+{
+	TriangleMesh mesh = tetrahedron();
+	mesh.faces.push_back({0, 0, 1});
+	mesh.faces.push_back({2, 3, 2});
+	mesh.faces.push_back({1, 1, 1});
+	const EdgeDefects defects = edge_defects(mesh);
+	CHECK(defects.non_manifold == 0);
+	CHECK(defects.boundary == std::vector<std::uint8_t> {0, 0, 0, 0});
+	CHECK(defects.irregular == std::vector<std::uint8_t> {0, 0, 0, 0});
 }
 
 TEST_CASE("non-manifold edges are counted", "[adjacency]")

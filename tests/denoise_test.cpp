@@ -369,6 +369,47 @@ TEST_CASE("the size of the mesh does not matter", "[denoise][slow]")
 	}
 }
 
+TEST_CASE("vertices without a face, however many and far, change nothing", "[denoise]")
+{
+	const auto method = GENERATE(Method::Adaptive, Method::Paper);
+	const TriangleMesh mesh = with_noise(make_part(3000), 0.2);
+	// They come first, where a mesh that is measured from its first vertex would be lost.
+	TriangleMesh littered = mesh;
+	const Index strays = 2 * mesh.vertex_count();
+	littered.positions.assign(static_cast<std::size_t>(strays), Point(1e16, -1e16, 3));
+	littered.positions.insert(
+		littered.positions.end(), mesh.positions.begin(), mesh.positions.end());
+	for (Face& face : littered.faces) {
+		for (Index& corner : face)
+			corner += strays;
+	}
+	const DenoiseResult expected = run(mesh, options_of(method));
+	const DenoiseResult result = run(littered, options_of(method));
+	CHECK(result.estimated_noise == expected.estimated_noise);
+	CHECK(
+		same_bits({result.positions.begin() + strays, result.positions.end()}, expected.positions));
+	for (Index i = 0; i < strays; ++i)
+		REQUIRE(same_bits({result.positions[at(i)]}, {littered.positions[at(i)]}));
+}
+
+TEST_CASE("a number that stands for automatic is as good as none", "[denoise]")
+{
+	const auto method = GENERATE(Method::Adaptive, Method::Paper);
+	const TriangleMesh mesh = with_noise(make_part(2000), 0.2);
+	DenoiseOptions options = options_of(method);
+	const DenoiseResult expected = run(mesh, options);
+	options.noise_level = AUTOMATIC;
+	options.iterations = -1;
+	options.vertex_iterations = -1;
+	options.structure_ring = -1;
+	options.cos_threshold = AUTOMATIC;
+	options.cos_threshold_increment = AUTOMATIC;
+	const DenoiseResult result = run(mesh, options);
+	CHECK(same_bits(result.positions, expected.positions));
+	CHECK(result.iterations_done == expected.iterations_done);
+	CHECK(result.status == Status::Done);
+}
+
 TEST_CASE("a turned mesh is denoised as well", "[denoise]")
 {
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);

@@ -15,11 +15,6 @@ using namespace orthopoly;
 
 namespace {
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 // The mesh's numbers of what lies within a ring.
 std::set<Index> within(const IndexSpan& faces, std::size_t count, const std::vector<Index>& numbers)
 {

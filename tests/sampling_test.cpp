@@ -112,11 +112,37 @@ TEST_CASE("The unit of the values changes no item", "[sampling]")
 	}
 }
 
-TEST_CASE("Values all alike are all taken", "[sampling]")
+TEST_CASE("Of values many of which are alike as many are taken", "[sampling]")
 {
-	// The faces of a cube's grid.
-	CHECK(sample_by_value(std::vector<double>(20000, 0.37), 2500).size() == 20000);
-	CHECK(sample_by_value(std::vector<double>(20000, 0.0), 2500).size() == 20000);
+	// The faces of a cube's grid, with noise in none of them, in a tenth and in half of them.
+	for (const int one_in : {0, 10, 2}) {
+		CAPTURE(one_in);
+		std::vector<double> values(20000, 0.37);
+		const std::vector<double> others = areas(20000);
+		for (std::size_t i = 0; one_in > 0 && i < values.size(); i += std::size_t(one_in))
+			values[i] = others[i];
+		const std::vector<Index> sample = sample_by_value(values, 2500);
+		CHECK(sample.size() > 2000);
+		CHECK(sample.size() < 3000);
+		const auto alike = std::count_if(sample.begin(), sample.end(), [&](Index i) {
+			return values[static_cast<std::size_t>(i)] == 0.37;
+		});
+		CHECK(
+			double(alike) / double(sample.size()) ==
+			Approx(one_in > 0 ? 1 - 1.0 / one_in : 1.0).margin(0.11));
+	}
+}
+
+TEST_CASE("Values that are not positive are left out of the sample", "[sampling]")
+{
+	// As those of vertices without a face: they would be most of it.
+	std::vector<double> values = areas(20000);
+	const std::vector<double> expected = sampled_values(values, 2500);
+	values.resize(50000, 0.0);
+	std::shuffle(values.begin(), values.end(), std::mt19937(5));
+	CHECK(sampled_values(values, 2500) == expected);
+	CHECK(sample_by_value({0, 2, -1, 3}, 100) == std::vector<Index> {1, 3});
+	CHECK(sample_by_value(std::vector<double>(20000, 0.0), 2500).empty());
 }
 
 TEST_CASE("About one face in so many is chosen, everywhere alike", "[sampling]")

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace orthopoly {
 
@@ -135,6 +136,16 @@ constexpr double SCANNER_SELECTION = 200;
 // still less than the level was taken: at the right one the method takes what is detail on top.
 constexpr double DETAIL = 0.25;
 constexpr double WORTH_LOWERING = 0.95;
+
+// Runs at lower levels: each lowers it by a seventh or more, and two have been enough so far.
+constexpr int MOST_LOWERINGS = 4;
+
+// A noise level that is set counts from here: less is rounding in the files that meshes come in.
+constexpr double NEGLIGIBLE_NOISE = 1e-6;
+
+// No threshold of similar directions is higher, however many iterations raise it: with none but the
+// face itself above it, there would be nothing to tell the noise by.
+constexpr double HIGHEST_THRESHOLD = 0.95;
 
 // Threshold of similar directions by noise level: strict while normals can be trusted, loose enough
 // for their scatter after the prefilter beyond.
@@ -310,19 +321,19 @@ scatters_by(double sigma, const Workspace& workspace, const std::vector<Point>& 
 // The normals to fit: the prefiltered original's, blended with the current ones by area.
 NormalField normal_field(
 	const FaceGeometry& original,
-	const FaceGeometry& current,
+	FaceGeometry current,
 	const std::vector<double>& scatters,
 	Execution& execution)
 {
 	NormalField field;
 	field.scatters = scatters;
-	field.guides = current.normals;
-	field.nodes = current.centroids;
-	field.data.resize(current.normals.size());
-	field.weights.resize(current.normals.size());
-	execution.for_each(static_cast<Index>(current.normals.size()), [&](std::size_t i) {
+	field.guides = std::move(current.normals);
+	field.nodes = std::move(current.centroids);
+	field.data.resize(field.guides.size());
+	field.weights.resize(field.guides.size());
+	execution.for_each(static_cast<Index>(field.guides.size()), [&](std::size_t i) {
 		const Point blend = ORIGINAL_SHARE * original.areas[i] * original.normals[i] +
-							(1 - ORIGINAL_SHARE) * current.areas[i] * current.normals[i];
+							(1 - ORIGINAL_SHARE) * current.areas[i] * field.guides[i];
 		field.weights[i] = blend.norm();
 		field.data[i] = field.weights[i] > 0 ? Point(blend / field.weights[i]) : blend;
 	});
@@ -349,12 +360,14 @@ public:
 		const std::vector<double> scatters = scatters_by(sigma_, workspace_, start);
 		for (int iteration = 0; iteration < plan_.iterations; ++iteration) {
 			const bool last = iteration + 1 == plan_.iterations;
-			const FaceGeometry current = face_geometry(workspace_, positions_);
-			std::vector<Point> normals =
-				filter(normal_field(original, current, scatters, workspace_.execution), iteration);
+			NormalField field = normal_field(
+				original, face_geometry(workspace_, positions_), scatters, workspace_.execution);
+			std::vector<Point> normals = filter(field, iteration);
+			const std::vector<Point> centroids = std::move(field.nodes);
+			field = {};
 			std::vector<double> paces;
 			if (last && plan_.correlation < 1)
-				paces = refine(current, normals);
+				paces = refine(centroids, normals);
 			begin_phase(iteration, 0.8, 1.0, "moving vertices");
 			VertexUpdateOptions update;
 			update.iterations = last ? plan_.vertex_iterations : plan_.guiding_vertex_iterations;
@@ -458,8 +471,8 @@ private:
 		begin_phase(iteration, 0.0, 0.5, "fitting normals");
 		NormalFilterOptions options;
 		const double guided = iteration * plan_.guiding;
-		options.cos_threshold =
-			std::min(1.0, plan_.cos_threshold + guided * plan_.cos_threshold_increment);
+		options.cos_threshold = std::min(
+			HIGHEST_THRESHOLD, plan_.cos_threshold + guided * plan_.cos_threshold_increment);
 		options.smallest_ring = plan_.rings.smallest;
 		options.largest_ring = plan_.rings.largest;
 		options.loosening = LOOSENING;
@@ -471,7 +484,8 @@ private:
 
 	// Takes the normals from the measured heights instead, as far as these agree. Returns the paces
 	// of the vertices: #V.
-	std::vector<double> refine(const FaceGeometry& current, std::vector<Point>& normals) const
+	std::vector<double>
+	refine(const std::vector<Point>& centroids, std::vector<Point>& normals) const
 	{
 		begin_phase(plan_.iterations - 1, 0.5, 0.8, "fitting heights");
 		HeightFilterOptions options;
@@ -484,7 +498,7 @@ private:
 		options.sigma = sigma_;
 		options.selection = HEIGHT_SELECTION;
 		const HeightNormals refined = normals_from_heights(
-			workspace_, {normals, current.centroids, workspace_.mesh.positions}, options);
+			workspace_, {normals, centroids, workspace_.mesh.positions}, options);
 		workspace_.execution.for_each(workspace_.mesh.face_count(), [&](std::size_t i) {
 			const double spread = refined.spreads[i] / SPREAD;
 			const double apart = (normals[i] - refined.normals[i]).norm() / DISAGREEMENT;
@@ -544,7 +558,8 @@ std::optional<TakenMoves> run_at(
 {
 	const Plan plan = plan_for(options, noise, correlation);
 	record(plan, result.resolved);
-	const bool nothing = options.noise_type != NoiseType::Scanner && noise < LEAST_NOISE;
+	const double least = options.noise_level ? NEGLIGIBLE_NOISE : LEAST_NOISE;
+	const bool nothing = options.noise_type != NoiseType::Scanner && noise < least;
 	result.status = nothing ? DenoiseResult::Status::NothingToDo : DenoiseResult::Status::Done;
 	result.iterations_done = nothing ? 0 : plan.iterations;
 	if (nothing)
@@ -573,7 +588,7 @@ void lower_and_run(
 	double& level = result.estimated_noise;
 	if (strength != 1)
 		taken = run(level);
-	for (int round = 0; taken && taken->predicted > DETAIL; ++round) {
+	for (int round = 0; round < MOST_LOWERINGS && taken && taken->predicted > DETAIL; ++round) {
 		const double left = std::sqrt(taken->square * (1 - taken->predicted));
 		if (left > WORTH_LOWERING || (round > 0 && taken->square > 1))
 			break;
@@ -622,7 +637,7 @@ void run_adaptive_method(
 		return;
 	give_back_inliers(
 		repaired,
-		outliers.left * workspace.mean_edge_length,
+		outliers.left * mean_edge_length(repaired, positions),
 		outliers.share * way_between(MANY_OUTLIERS, FEW_OUTLIERS, outliers.found),
 		positions);
 }

@@ -9,11 +9,6 @@ namespace orthopoly {
 
 namespace {
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 // A face that names a vertex twice counts once around it.
 bool first_mention(const Face& face, std::size_t k)
 {
@@ -33,14 +28,15 @@ struct EdgeMention {
 
 constexpr Index GRAIN = 1024;
 
-// The edges of a face that has two different ends, one of them the vertex.
+// The edges of a face that end in the vertex. A face that names a vertex twice has none: its
+// edges would be there once too often.
 void add_mentions(const Face& face, Index vertex, std::vector<EdgeMention>& mentions)
 {
+	if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
+		return;
 	for (std::size_t k = 0; k < 3; ++k) {
 		const Index a = face[k];
 		const Index b = face[(k + 1) % 3];
-		if (a == b)
-			continue;
 		if (a == vertex)
 			mentions.push_back({b, true});
 		if (b == vertex)
@@ -87,6 +83,7 @@ EdgeDefects find_edge_defects(
 	EdgeDefects defects;
 	const std::size_t vertex_count = vertex_faces.offsets.size() - 1;
 	defects.boundary.resize(vertex_count, 0);
+	defects.irregular.resize(vertex_count, 0);
 	const auto workers = static_cast<std::size_t>(execution.threads());
 	std::vector<std::vector<EdgeMention>> mentions_of_worker(workers);
 	std::vector<Index> non_manifold(workers, 0);
@@ -104,8 +101,10 @@ EdgeDefects find_edge_defects(
 					std::size_t next = k;
 					while (next < mentions.size() && mentions[next].other == mention.other)
 						++next;
-					if (next - k != 2)
+					if (next - k == 1)
 						defects.boundary[at(vertex)] = 1;
+					if (next - k != 2)
+						defects.irregular[at(vertex)] = 1;
 					// Counted from one of its ends.
 					const bool is_manifold =
 						next - k == 1 ||

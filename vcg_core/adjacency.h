@@ -53,14 +53,17 @@ IndexLists vertex_faces(Index vertex_count, const std::vector<Face>& faces);
 
 /// Edges where a mesh is not a closed surface.
 struct EdgeDefects {
-	/// #V flags: one where the vertex lies on an edge that does not belong to exactly two faces.
+	/// #V flags: one where the vertex lies on an open edge, which belongs to one face only.
 	std::vector<std::uint8_t> boundary;
+	/// #V flags: one where the vertex lies on an edge that does not belong to exactly two faces, so
+	/// that those around it are no disc.
+	std::vector<std::uint8_t> irregular;
 	/// Edges that belong to more than two faces, or to two faces that run along it the same way.
 	Index non_manifold = 0;
 };
 
-/// Looks at every edge from both its ends. O(#F), and a logarithm of the faces around a vertex.
-/// Throws Cancelled.
+/// Looks at every edge from both its ends; faces that name a vertex twice have none. O(#F), and a
+/// logarithm of the faces around a vertex. Throws Cancelled.
 EdgeDefects find_edge_defects(
 	const std::vector<Face>& faces, const IndexLists& vertex_faces, Execution& execution);
 

@@ -42,6 +42,26 @@ const MethodEntry& entry_of(Method method)
 	});
 }
 
+// The automatic values written as such a number become the empty optionals they stand for.
+DenoiseOptions normalized(const DenoiseOptions& options)
+{
+	DenoiseOptions result = options;
+	for (const Parameter<DenoiseOptions>& parameter : denoise_parameters())
+		parameter.set(result, parameter.get(options));
+	return result;
+}
+
+// A place on the surface, from which coordinates are measured: a corner of the first face that has
+// an area, since vertices without a face may be anywhere.
+Point place_on(const TriangleMesh& mesh)
+{
+	const auto face =
+		std::find_if(mesh.faces.begin(), mesh.faces.end(), [&](const Face& candidate) {
+			return !is_degenerate(mesh.positions, candidate);
+		});
+	return mesh.positions[static_cast<std::size_t>(face->front())];
+}
+
 Index count_degenerate_faces(const TriangleMesh& mesh, Execution& execution)
 {
 	return static_cast<Index>(execution.sum(mesh.face_count(), [&](Index i) {
@@ -53,19 +73,20 @@ void record_displacements(const TriangleMesh& mesh, DenoiseResult& result)
 {
 	double sum = 0;
 	for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-		const double squared = (result.positions[i] - mesh.positions[i]).squaredNorm();
-		if (squared > 0)
+		const double length = (result.positions[i] - mesh.positions[i]).norm();
+		if (length > 0)
 			++result.moved_vertices;
-		sum += squared;
-		result.max_displacement = std::max(result.max_displacement, std::sqrt(squared));
+		sum += length;
+		result.max_displacement = std::max(result.max_displacement, length);
 	}
-	result.mean_displacement = std::sqrt(sum / static_cast<double>(mesh.positions.size()));
+	result.mean_displacement = sum / static_cast<double>(mesh.positions.size());
 }
 
 } // namespace
 
-void validate(const DenoiseOptions& options)
+void validate(const DenoiseOptions& given)
 {
+	const DenoiseOptions options = normalized(given);
 	for (const Parameter<DenoiseOptions>& parameter : denoise_parameters())
 		parameter.check(parameter.get(options));
 	if (options.method == Method::Paper && options.structure_ring &&
@@ -76,9 +97,10 @@ void validate(const DenoiseOptions& options)
 			"; the guide ring may not be the wider one: lower it or raise structure_ring");
 }
 
-DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& options, Progress& progress)
+DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& given, Progress& progress)
 {
-	validate(options);
+	validate(given);
+	const DenoiseOptions options = normalized(given);
 	validate(mesh);
 	if (mesh.faces.empty())
 		throw InvalidMesh(
@@ -100,7 +122,7 @@ DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& options, P
 		const MethodEntry& method = entry_of(options.method);
 		const Numbering numbering =
 			method.any_order ? number_by_place(mesh, execution) : same_numbering(mesh);
-		const Point origin = method.any_order ? mesh.positions.front() : Point(Point::Zero());
+		const Point origin = place_on(mesh);
 		execution.begin_phase(0.005, 0.01, "reading the mesh");
 		TriangleMesh prepared = renumbered(mesh, numbering, origin);
 		// A cancel is heard between any two of these steps.

@@ -37,8 +37,9 @@ struct DenoiseOptions {
 	Strength strength = Strength::Normal;
 	/// The result says which of the two it was taken for; in between, which it was closer to.
 	NoiseType noise_type = NoiseType::Automatic;
-	/// Adaptive: standard deviation of the noise along the normal, in mean edge lengths, before
-	/// `strength` is applied to it.
+	/// Adaptive: standard deviation of the noise along the normal before `strength` is applied to
+	/// it, in mean edge lengths of the surface below the noise (which lengthens them). One that is
+	/// given is used however small; below an estimate of 0.025 nothing is done.
 	std::optional<double> noise_level;
 	/// Rounds of normal filtering and vertex update (n_iter of the paper: 5).
 	std::optional<int> iterations;
@@ -49,7 +50,8 @@ struct DenoiseOptions {
 	/// Paper: rings r of the local structure S_i, in face rings.
 	int guide_ring = 1;
 	/// Rings R of the non-local structure, in face rings (automatic in the paper's method: one more
-	/// than the guide ring); adaptive: the largest tried.
+	/// than the guide ring); adaptive: the largest tried for normals, those of heights being wider
+	/// in the same measure as by themselves.
 	std::optional<int> structure_ring;
 	/// Paper: sigma_theta of eq. 3, degrees.
 	double sigma_theta = 30.0;
@@ -79,8 +81,8 @@ struct DenoiseResult {
 	std::vector<Point> positions;
 	/// The options with every automatic value filled in (only those the method uses).
 	DenoiseOptions resolved;
-	/// Adaptive: estimated noise along the normal, in mean edge lengths, also where a level was
-	/// given.
+	/// Adaptive: estimated noise along the normal, in the unit of `noise_level`, also where a level
+	/// was given.
 	double estimated_noise = 0;
 	int iterations_done = 0;
 	/// Faces without area, which are neither filtered nor vote.
@@ -90,7 +92,8 @@ struct DenoiseResult {
 	/// Faces more than 90 degrees away from the mean normal of those around them.
 	Index folded_faces_before = 0;
 	Index folded_faces_after = 0;
-	/// Vertices moved, and by how much (root mean square and largest, the caller's length unit).
+	/// Vertices moved, and by how much (mean over all vertices and largest, the caller's length
+	/// unit).
 	Index moved_vertices = 0;
 	double mean_displacement = 0;
 	double max_displacement = 0;
@@ -103,8 +106,8 @@ void validate(const DenoiseOptions& options);
 /// Denoises a mesh. Faces keep their order and vertices; only positions change.
 ///
 /// The input is never changed. Same result bit for bit for any number of threads. Throws
-/// InvalidMesh for a mesh without faces, with a coordinate that is not finite or an index out of
-/// range, InvalidParameter as `validate` does.
+/// InvalidMesh as `validate` of a mesh does and for one without a face that has an area,
+/// InvalidParameter as `validate` of the options does.
 DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& options, Progress& progress);
 
 } // namespace orthopoly

@@ -72,11 +72,6 @@ constexpr double LARGEST_DISTANCE = 0.035;
 
 constexpr Index GRAIN = 256;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 Moves moves_along_normals(
 	const Workspace& workspace, double sigma, const std::vector<Point>& positions)
 {
@@ -166,12 +161,10 @@ void give_back_common(const Workspace& workspace, double sigma, std::vector<Poin
 // What the neighbours of some vertices predict of their moves.
 std::vector<PredictedMove> predict_moves(
 	const Workspace& workspace,
-	const std::vector<Point>& positions,
 	const Moves& moves,
+	const std::vector<MovePredictor::DirectedMoves>& directed,
 	const std::vector<Index>& vertices)
 {
-	const std::vector<MovePredictor::DirectedMoves> directed =
-		MovePredictor::directed_moves(workspace, positions, moves.lengths);
 	std::vector<MovePredictor> predictors(
 		static_cast<std::size_t>(workspace.execution.threads()),
 		MovePredictor(workspace, moves, directed));
@@ -189,11 +182,12 @@ std::vector<PredictedMove> predict_moves(
 TakenMoves give_back_ridges(const Workspace& workspace, double sigma, std::vector<Point>& positions)
 {
 	const Moves moves = moves_beside_edges(workspace, sigma, positions);
-	const std::vector<Index> sample =
-		sample_by_value(areas_around(workspace, positions), PREDICTIONS);
+	const std::vector<MovePredictor::DirectedMoves> directed =
+		MovePredictor::directed_moves(workspace, positions, moves.lengths);
+	const std::vector<Index> sample = sample_vertices(workspace, positions, PREDICTIONS);
 	std::vector<double> shares;
 	std::vector<double> squares;
-	for (const PredictedMove& predicted : predict_moves(workspace, positions, moves, sample)) {
+	for (const PredictedMove& predicted : predict_moves(workspace, moves, directed, sample)) {
 		shares.push_back(predicted.share);
 		squares.push_back(predicted.square);
 	}
@@ -206,7 +200,7 @@ TakenMoves give_back_ridges(const Workspace& workspace, double sigma, std::vecto
 		if (moves.lengths[at(i)] != 0 && !workspace.mesh.is_fixed(i))
 			all.push_back(i);
 	}
-	const std::vector<PredictedMove> predicted = predict_moves(workspace, positions, moves, all);
+	const std::vector<PredictedMove> predicted = predict_moves(workspace, moves, directed, all);
 	workspace.execution.for_each(static_cast<Index>(all.size()), [&](std::size_t k) {
 		const double certainty = ridged * way_between(RIDGE_BEGINS, RIDGE, predicted[k].share);
 		positions[at(all[k])] +=

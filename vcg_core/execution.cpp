@@ -19,7 +19,7 @@ namespace {
 // Below this many parts a loop is over before a sleeping thread has woken up.
 constexpr Index FEWEST_PARTS_FOR_THREADS = 4;
 
-// A caller hears of the work ten times a second, and a cancel is obeyed as fast.
+// A caller hears of the work twenty times a second, and a cancel is obeyed as fast.
 constexpr std::chrono::milliseconds REPORT_INTERVAL(50);
 
 // Terms are added up in blocks of this size, so that the order does not depend on the threads.

@@ -36,11 +36,6 @@ constexpr double SLIVER = 0.15;
 // Half of what others are given: their targets lie the other way.
 constexpr double AREA_AT_EDGE = 0.5 * UNFOLDED_AREA;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 /// The targets across the edges of a face.
 struct Surroundings {
 	Point sum = Point::Zero();

@@ -17,11 +17,6 @@ constexpr double PI = 3.14159265358979323846;
 // Faces a thread takes at a time: about a millisecond of work at the default ring.
 constexpr Index GRAIN = 256;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 // Finds guide directions one after the other. Keeps scratch memory, so one object per thread.
 class TensorVoting {
 public:

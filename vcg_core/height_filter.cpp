@@ -53,11 +53,6 @@ constexpr int RINGS_FOR_AXES = 2;
 // about twice the vertices of the one before.
 constexpr std::array<int, 7> SIZES = {1, 2, 3, 5, 7, 10, 14};
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 /// Vertices side by side.
 template<class Lanes>
 struct VertexGroup {

@@ -8,14 +8,14 @@
 
 namespace orthopoly {
 
-/// What `normals_from_heights` reads.
+/// What `normals_from_heights` reads; the arrays have to outlive it.
 struct HeightField {
 	/// #F unit guide directions V_i, already filtered. Zero: the face is left out.
-	std::vector<Point> guides;
+	const std::vector<Point>& guides;
 	/// #F centroids, where the normals are wanted.
-	std::vector<Point> nodes;
+	const std::vector<Point>& nodes;
 	/// #V positions as measured, with all their noise.
-	std::vector<Point> positions;
+	const std::vector<Point>& positions;
 };
 
 /// Options of `normals_from_heights`.

@@ -16,6 +16,7 @@ struct Inspection {
 	Index duplicate_faces = 0;
 	/// Faces without area.
 	Index degenerate_faces = 0;
+	/// Vertices on an edge that belongs to one face only.
 	Index boundary_vertices = 0;
 	/// Edges with more than two faces or two faces of opposite orientation.
 	Index non_manifold_edges = 0;
@@ -23,6 +24,8 @@ struct Inspection {
 	Index components = 0;
 };
 
+/// Looks for all of that. The faces have to name vertices that are there, as every reader of files
+/// makes sure.
 Inspection inspect(const TriangleMesh& mesh);
 
 } // namespace orthopoly

@@ -19,13 +19,11 @@ constexpr std::size_t FEWEST_FREE = 4;
 // Nodes on a line, or on a conic's worth of coincidences, do not fix a cubic.
 constexpr double LEAST_CONDITION = 1e-10;
 
+// Vertices that may move, below which what they tell is less steady than what all of them do.
+constexpr Index FEWEST_MOVING = 500;
+
 // Taubin pairs of the surface below the heights.
 constexpr double SMOOTHING_PAIRS = 4;
-
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
 
 } // namespace
 
@@ -157,6 +155,22 @@ std::vector<double> areas_around(const Workspace& workspace, const std::vector<P
 			areas[i] += face_cross_product(positions, workspace.mesh.faces[at(*face)]).norm();
 	});
 	return areas;
+}
+
+std::vector<Index>
+sample_vertices(const Workspace& workspace, const std::vector<Point>& positions, Index wanted)
+{
+	const std::vector<double> areas = areas_around(workspace, positions);
+	if (workspace.mesh.fixed.empty())
+		return sample_by_value(areas, wanted);
+	std::vector<double> moving = areas;
+	Index count = 0;
+	for (std::size_t i = 0; i < moving.size(); ++i) {
+		if (workspace.mesh.fixed[i] != 0)
+			moving[i] = 0;
+		count += moving[i] > 0 ? 1 : 0;
+	}
+	return sample_by_value(count < FEWEST_MOVING ? areas : moving, wanted);
 }
 
 } // namespace orthopoly

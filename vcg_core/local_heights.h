@@ -80,8 +80,13 @@ private:
 	std::vector<double> sizes_;
 };
 
-/// #V sums of the face areas around every vertex, times two: with them `sample_by_value` chooses
-/// the same vertices however they are numbered.
+/// #V sums of the face areas around every vertex, times two.
 std::vector<double> areas_around(const Workspace& workspace, const std::vector<Point>& positions);
+
+/// About `wanted` of the vertices that may move, to read off them what they are like: the same ones
+/// however they are numbered (`sample_by_value` of the areas around them). Those that are fixed
+/// count as well where too few others have faces.
+std::vector<Index>
+sample_vertices(const Workspace& workspace, const std::vector<Point>& positions, Index wanted);
 
 } // namespace orthopoly

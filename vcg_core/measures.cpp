@@ -19,11 +19,6 @@ namespace {
 constexpr double DEGREES_PER_RADIAN = 57.295779513082320877;
 constexpr double RIGHT_ANGLE = 90 / DEGREES_PER_RADIAN;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 // Stays exact for angles near 0 and 180 degrees, where the arc cosine loses half the digits.
 double angle_between(const Point& a, const Point& b)
 {

@@ -21,11 +21,6 @@ constexpr int TERMS = 4;
 using Terms = Eigen::Matrix<double, TERMS, 1>;
 using Gram = Eigen::Matrix<double, TERMS, TERMS>;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 // A product of two directions that a symmetric matrix stored as DirectedMoves is multiplied by.
 MovePredictor::DirectedMoves product(const Point& a, const Point& b)
 {

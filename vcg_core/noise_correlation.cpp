@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "noise_correlation.h"
 
+#include "interpolation.h"
 #include "local_heights.h"
 #include "sampling.h"
 
@@ -19,10 +20,7 @@ struct Ramp {
 	double zero;
 	double one;
 
-	double operator()(double value) const
-	{
-		return std::min(1.0, std::max(0.0, (value - zero) / (one - zero)));
-	}
+	double operator()(double value) const { return way_between(zero, one, value); }
 };
 
 // Irregularity of the view. Depth images in perspective have 0.2, a jittered grid as well; the
@@ -110,7 +108,7 @@ measure_noise_correlation(const Workspace& workspace, const std::vector<Point>& 
 	if (ONE_VIEW(result.view_irregularity) == 0)
 		return result;
 	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
-	const std::vector<Index> sample = sample_by_value(areas_around(workspace, positions), SAMPLES);
+	const std::vector<Index> sample = sample_vertices(workspace, positions, SAMPLES);
 	std::vector<Residuals> found(sample.size());
 	std::vector<LocalHeights> heights(
 		static_cast<std::size_t>(workspace.execution.threads()),

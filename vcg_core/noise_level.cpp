@@ -135,8 +135,6 @@ private:
 	using Terms = Eigen::Matrix<double, static_cast<int>(TERMS), 1>;
 	using Gram = Eigen::Matrix<double, static_cast<int>(TERMS), static_cast<int>(TERMS)>;
 
-	static std::size_t at(Index index) { return static_cast<std::size_t>(index); }
-
 	// The corners of the similar faces around the vertex and its neighbours.
 	void collect(Index vertex, const Point& normal)
 	{
@@ -163,7 +161,12 @@ private:
 	{
 		const Point tangent = normal.unitOrthogonal();
 		const Point bitangent = normal.cross(tangent);
-		const double scale = 1 / workspace_.mean_edge_length;
+		double extent = 0;
+		for (const Index i : members_)
+			extent = std::max(extent, (smooth_[at(i)] - center).norm());
+		if (!(extent > 0))
+			return -1;
+		const double scale = 1 / extent;
 		Gram gram = Gram::Zero();
 		Terms moments = Terms::Zero();
 		double energy = 0;
@@ -427,7 +430,7 @@ double level_beside_edges(double whole, double similar, double length)
 NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions)
 {
 	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
-	const std::vector<Index> sample = sample_by_value(areas_around(workspace, positions), SAMPLES);
+	const std::vector<Index> sample = sample_vertices(workspace, positions, SAMPLES);
 	std::vector<LocalHeights> heights(
 		static_cast<std::size_t>(workspace.execution.threads()),
 		LocalHeights(workspace, positions, smooth));

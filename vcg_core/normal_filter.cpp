@@ -61,11 +61,6 @@ constexpr std::size_t RINGS = NormalFilterOptions::MAX_RINGS + 1;
 /// Residual variances by number of rings; negative where there is none.
 using Variances = std::array<double, RINGS>;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 std::size_t degree_for(int members)
 {
 	return members >= MEMBERS_FOR_QUADRATIC ? 2 : members >= MEMBERS_FOR_LINEAR ? 1 : 0;

@@ -17,11 +17,6 @@ constexpr int BUCKET_BITS = 12;
 
 constexpr Index GRAIN = 4096;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 struct Key {
 	std::uint64_t place;
 	Index face;
@@ -35,11 +30,14 @@ struct Key {
 // The place of every face on the curve.
 std::vector<Key> keys_of(const TriangleMesh& mesh, Execution& execution)
 {
-	Point low = mesh.positions.front();
+	// Of the faces: a stray vertex far off would leave them all in one cell.
+	Point low = mesh.positions[at(mesh.faces.front().front())];
 	Point high = low;
-	for (const Point& point : mesh.positions) {
-		low = low.cwiseMin(point);
-		high = high.cwiseMax(point);
+	for (const Face& face : mesh.faces) {
+		for (const Index vertex : face) {
+			low = low.cwiseMin(mesh.positions[at(vertex)]);
+			high = high.cwiseMax(mesh.positions[at(vertex)]);
+		}
 	}
 	const double extent = (high - low).maxCoeff();
 	const double cells = std::ldexp(1.0, BITS);

@@ -16,7 +16,7 @@ struct Numbering {
 	std::vector<Index> vertices;
 };
 
-/// Numbers faces along a Hilbert curve through the bounding box (Hilbert 1891; its index by
+/// Numbers faces along a Hilbert curve through their bounding box (Hilbert 1891; its index by
 /// Skilling 2004), and vertices as the faces come upon them, those without a face last. What is
 /// close in space is then close in memory, and consecutive faces make up compact patches.
 ///

@@ -78,11 +78,6 @@ constexpr double EXPLAINED = 0.5;
 
 constexpr Index GRAIN = 256;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 /// The work on one mesh.
 class Repair {
 public:
@@ -128,7 +123,8 @@ public:
 	}
 
 private:
-	// Flags the outliers and weighs all by that; returns how many there are.
+	// Flags the outliers; returns how many there are. What looked like one and is none after all is
+	// far off still, and goes on weighing less.
 	Index flag()
 	{
 		std::vector<double> distances;
@@ -247,7 +243,7 @@ private:
 	{
 		std::vector<Point> moved = positions_;
 		for_each_vertex([&](Index i, VertexRings& rings) {
-			if (flags_[at(i)] == 0 || workspace_.edges.boundary[at(i)] != 0)
+			if (flags_[at(i)] == 0 || workspace_.edges.irregular[at(i)] != 0)
 				return;
 			rings.collect(i, 1);
 			Point sum = Point::Zero();

@@ -11,11 +11,6 @@ namespace {
 constexpr Index NO_KEY = -1;
 constexpr std::size_t LEAST_ENTRIES = 1024;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 // Where to look for a key first: multiplied by 2^32 over the golden ratio, neighbours lie apart.
 std::size_t place_of(Index key, std::size_t entries)
 {

@@ -18,11 +18,6 @@ constexpr Index BLOCK = 1024;
 // Faces a thread takes at a time when the votes are gathered.
 constexpr Index SMALLEST_GATHER_GRAIN = 4096;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 // Sum of what one fit says about one face.
 struct Vote {
 	Index face;

@@ -16,11 +16,6 @@ constexpr double INFLATE = -0.53;
 
 constexpr Index GRAIN = 2048;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 // The way from a vertex on an open boundary to the middle between those next to it there; zero
 // where these are not two.
 Point way_into_outline(
@@ -58,7 +53,7 @@ Point umbrella(
 	const Index count = workspace.vertex_faces.size(vertex);
 	if (count == 0 || workspace.mesh.is_fixed(vertex))
 		return here;
-	const bool on_boundary = workspace.edges.boundary[at(vertex)] != 0;
+	const bool on_boundary = workspace.edges.irregular[at(vertex)] != 0;
 	Point sum = Point::Zero();
 	const Index* const end = workspace.vertex_faces.end(vertex);
 	for (const Index* it = workspace.vertex_faces.begin(vertex); it != end; ++it) {
@@ -141,10 +136,7 @@ std::vector<std::uint8_t> folded_vertices(
 {
 	const std::vector<Face>& faces = workspace.mesh.faces;
 	const IndexLists& around = workspace.vertex_faces;
-	std::vector<Point> sums(positions.size());
-	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		sums[i] = cross_product_around(workspace, positions, static_cast<Index>(i));
-	});
+	const std::vector<Point> sums = cross_products_around(workspace, positions);
 	std::vector<std::uint8_t> folded(faces.size(), 0);
 	workspace.execution.parallel_for(
 		workspace.mesh.face_count(), GRAIN, [&](Index begin, Index end, int) {
@@ -152,12 +144,11 @@ std::vector<std::uint8_t> folded_vertices(
 				const Face& face = faces[k];
 				const Point cross = face_cross_product(positions, face);
 				double longest = 0;
-				Point surroundings = -3 * cross;
+				const Point surroundings = cross_product_beside(face, cross, sums);
 				for (std::size_t corner = 0; corner < 3; ++corner) {
 					const Point& here = positions[at(face[corner])];
 					const Point& next = positions[at(face[(corner + 1) % 3])];
 					longest = std::max(longest, (next - here).norm());
-					surroundings += sums[at(face[corner])];
 				}
 				const double length = cross.norm();
 				const double along = cross.dot(surroundings);

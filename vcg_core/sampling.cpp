@@ -2,8 +2,8 @@
 #include "sampling.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <numeric>
 
 namespace orthopoly {
 
@@ -13,6 +13,10 @@ namespace {
 constexpr double DICE_RESOLUTION = 1e6;
 // Sizes beyond that are no digits, and too rare to be missed.
 constexpr double LARGEST_DIGITS = 1e18;
+// A sample that is this share of its size and so many of its standard deviations too large or too
+// small was not drawn by dice: many of the values are alike.
+constexpr double MOST_OFF = 0.25;
+constexpr double DEVIATIONS_OFF = 6;
 
 double scale_of(double mean)
 {
@@ -34,22 +38,35 @@ std::uint64_t dice_of(double value, double scale)
 
 std::vector<Index> sample_by_value(const std::vector<double>& values, Index wanted)
 {
-	const auto count = static_cast<Index>(values.size());
-	std::vector<Index> sample;
-	const Index every = wanted > 0 ? count / wanted : 1;
-	const double mean = std::accumulate(values.begin(), values.end(), 0.0) /
-						std::max(1.0, static_cast<double>(count));
-	if (every > 1 && mean > 0) {
-		for (Index i = 0; i < count; ++i) {
-			const double digits = DICE_RESOLUTION * values[static_cast<std::size_t>(i)] / mean;
-			if (digits < LARGEST_DIGITS && static_cast<std::int64_t>(digits) % every == 0)
-				sample.push_back(i);
-		}
+	std::vector<Index> positive;
+	double sum = 0;
+	for (std::size_t i = 0; i < values.size(); ++i) {
+		if (!(values[i] > 0))
+			continue;
+		positive.push_back(static_cast<Index>(i));
+		sum += values[i];
 	}
-	// Values that are all alike are no dice.
-	if (2 * sample.size() < static_cast<std::size_t>(std::min(count, wanted))) {
-		sample.resize(values.size());
-		std::iota(sample.begin(), sample.end(), Index(0));
+	if (wanted <= 0)
+		return {};
+	const auto count = static_cast<Index>(positive.size());
+	const Index every = count / wanted;
+	if (every <= 1)
+		return positive;
+	std::vector<Index> sample;
+	const double scale = scale_of(sum / count);
+	for (const Index i : positive) {
+		const double digits = scale * values[static_cast<std::size_t>(i)];
+		if (digits < LARGEST_DIGITS && static_cast<std::int64_t>(digits) % every == 0)
+			sample.push_back(i);
+	}
+	const double expected = static_cast<double>(count) / every;
+	const double off = std::abs(static_cast<double>(sample.size()) - expected);
+	if (off <= std::max(MOST_OFF * expected, DEVIATIONS_OFF * std::sqrt(expected)))
+		return sample;
+	sample.clear();
+	for (Index k = 0; k < count; ++k) {
+		if (dice_of(k, 1) % static_cast<std::uint64_t>(every) == 0)
+			sample.push_back(positive[static_cast<std::size_t>(k)]);
 	}
 	return sample;
 }

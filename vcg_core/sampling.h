@@ -13,7 +13,8 @@ namespace orthopoly {
 ///
 /// Which ones depends on the items' values (areas, say) and not on their numbers, so that a mesh
 /// with its faces in another order gives the same sample: the value's digits serve as the dice.
-/// @param values positive numbers, one an item
+/// Where many values are alike and so no dice, the numbers are.
+/// @param values one an item; those that are not positive are left out
 std::vector<Index> sample_by_value(const std::vector<double>& values, Index wanted);
 
 /// #F flags of about one face in so many, everywhere alike: one in so many of any face and those

@@ -15,11 +15,6 @@ namespace {
 // Faces a thread takes at a time.
 constexpr Index GRAIN = 256;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 // Turns lengths, kept one place further on, into offsets.
 void accumulate_lengths(std::vector<Index>& offsets, int ring)
 {

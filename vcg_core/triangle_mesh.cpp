@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <string>
 
 namespace orthopoly {
@@ -24,10 +26,20 @@ constexpr double DEGENERATE_RATIO = 1e-14;
 // Squares of areas still fit into a number then.
 constexpr double LARGEST_COORDINATE = 1e60;
 
+// Every vertex and every corner of a face has an index.
+constexpr std::size_t MOST_VERTICES = std::numeric_limits<Index>::max();
+constexpr std::size_t MOST_FACES = MOST_VERTICES / 3;
+
 } // namespace
 
 void validate(const TriangleMesh& mesh)
 {
+	if (mesh.positions.size() > MOST_VERTICES || mesh.faces.size() > MOST_FACES)
+		throw InvalidMesh(
+			"the mesh has " + std::to_string(mesh.positions.size()) + " vertices and " +
+			std::to_string(mesh.faces.size()) + " faces; at most " + std::to_string(MOST_VERTICES) +
+			" and " + std::to_string(MOST_FACES) +
+			" can be counted: simplify it or cut it into parts");
 	for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
 		if (!mesh.positions[i].allFinite())
 			throw InvalidMesh(
@@ -73,9 +85,7 @@ void FaceGeometry::measure(
 	const Point cross = face_cross_product(positions, face);
 	const double length = cross.norm();
 	areas[i] = 0.5 * length;
-	centroids[i] =
-		(corner(positions, face, 0) + corner(positions, face, 1) + corner(positions, face, 2)) /
-		3.0;
+	centroids[i] = face_centroid(positions, face);
 	normals[i] = is_degenerate(positions, face) ? Point(Point::Zero()) : Point(cross / length);
 }
 

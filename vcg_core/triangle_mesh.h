@@ -4,14 +4,21 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace orthopoly {
 
-/// Index of a vertex or a face. 32 bits: two thousand million faces are out of reach anyway, and
-/// the neighbour lists are half as large.
+/// Index of a vertex, a face or a corner of one. 32 bits: the neighbour lists are half as large,
+/// and more than seven hundred million faces are out of reach anyway.
 using Index = std::int32_t;
+
+/// An index as the standard containers want it.
+constexpr std::size_t at(Index index)
+{
+	return static_cast<std::size_t>(index);
+}
 
 using Point = Eigen::Vector3d;
 using Face = std::array<Index, 3>;
@@ -48,7 +55,8 @@ struct FaceGeometry {
 };
 
 /// Throws InvalidMesh where a face names a vertex that is not there or a coordinate is not
-/// finite or beyond 1e60, or where `fixed` is neither empty nor #V long. Faces without area,
+/// finite or beyond 1e60, where there are more vertices or corners of faces than an Index counts,
+/// or where `fixed` is neither empty nor #V long. Faces without area,
 /// repeated faces, unreferenced vertices and non-manifold parts are fine.
 void validate(const TriangleMesh& mesh);
 
@@ -59,6 +67,14 @@ inline Point face_cross_product(const std::vector<Point>& positions, const Face&
 		return positions[static_cast<std::size_t>(face[k])];
 	};
 	return (corner(1) - corner(0)).cross(corner(2) - corner(0));
+}
+
+/// Mean of the corners of a face; reckoned from the first of them, since the sum of three corners
+/// far off would lose digits.
+inline Point face_centroid(const std::vector<Point>& positions, const Face& face)
+{
+	const Point& a = positions[at(face[0])];
+	return a + ((positions[at(face[1])] - a) + (positions[at(face[2])] - a)) / 3.0;
 }
 
 /// True where a face names a vertex twice or its area is too small for its normal to mean
@@ -78,7 +94,8 @@ double edge_squares(const std::vector<Point>& positions, const Face& face);
 double perimeter(const std::vector<Point>& positions, const Face& face);
 
 /// Mean length of the edges, every edge of every face counted (an inner edge twice); zero for a
-/// mesh without faces. All "mean edge length" units of the options mean this one.
+/// mesh without faces. The unit of noise levels is that of the surface below the noise, which
+/// lengthens edges.
 double mean_edge_length(const std::vector<Point>& positions, const std::vector<Face>& faces);
 
 /// Length of the diagonal of the axis-aligned box around the vertices; zero for none.

@@ -22,11 +22,6 @@ constexpr double PLAIN = 0.8;
 constexpr int STEPS = 30;
 constexpr int TRIES = 3;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 /// A face near a fold.
 struct FoldFace {
 	Index face;
@@ -101,17 +96,12 @@ private:
 
 	std::vector<Index> find_folded() const
 	{
-		std::vector<Point> sums(positions_.size());
-		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
-			sums[i] = cross_product_around(workspace_, positions_, static_cast<Index>(i));
-		});
+		const std::vector<Point> sums = cross_products_around(workspace_, positions_);
 		std::vector<std::uint8_t> flags(faces_.size(), 0);
 		workspace_.execution.for_each(workspace_.mesh.face_count(), [&](std::size_t i) {
 			const auto face = static_cast<Index>(i);
 			const Point cross = cross_product(face);
-			Point around = -3 * cross;
-			for (const Index corner : faces_[i])
-				around += sums[at(corner)];
+			const Point around = cross_product_beside(faces_[i], cross, sums);
 			const double length = cross.norm();
 			if (cross.dot(normals_[i]) <= FOLDED * length ||
 				cross.dot(around) <= PLAIN * length * around.norm())
@@ -181,7 +171,7 @@ private:
 		// corner to be turned back by.
 		const auto stays = [&](Index vertex) {
 			return workspace_.mesh.is_fixed(vertex) ||
-				   (workspace_.edges.boundary[at(vertex)] != 0 &&
+				   (workspace_.edges.irregular[at(vertex)] != 0 &&
 					workspace_.vertex_faces.size(vertex) > 1);
 		};
 		fold.vertices.erase(
@@ -220,10 +210,7 @@ private:
 			if (n.isZero(0))
 				continue;
 			const double area = cross_product(entry.face).norm();
-			const Point& first = positions_[at(face[0])];
-			const Point centroid =
-				first +
-				((positions_[at(face[1])] - first) + (positions_[at(face[2])] - first)) / 3.0;
+			const Point centroid = face_centroid(positions_, face);
 			fold.for_each_corner(face, [&](std::size_t k, std::size_t place) {
 				sums[place] += area * n.dot(centroid - positions_[at(face[k])]) * n;
 				weights[place] += area;

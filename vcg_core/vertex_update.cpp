@@ -31,11 +31,6 @@ constexpr Index FETCHED_AHEAD = 8;
 // Factor by which the accelerated steps together reduce all of the spectrum above their cutoff.
 constexpr double REDUCTION = 1e-3;
 
-std::size_t at(Index index)
-{
-	return static_cast<std::size_t>(index);
-}
-
 /// Chebyshev semi-iteration for a spectrum within (cutoff, 1) (Saad 2003, section 12.3): how much
 /// of the last move a step repeats, and how much of the descent it adds.
 class ChebyshevSteps {
@@ -87,20 +82,13 @@ struct alignas(64) FaceState {
 	bool folded;
 };
 
-// From the first corner: the sum of three far-off corners would lose digits.
-Point centroid_of(const std::vector<Point>& positions, const Face& face)
-{
-	const Point& a = positions[at(face[0])];
-	return a + ((positions[at(face[1])] - a) + (positions[at(face[2])] - a)) / 3.0;
-}
-
 void measure(
 	const std::vector<Point>& positions,
 	const Face& face,
 	const VertexUpdateOptions& options,
 	FaceState& state)
 {
-	state.centroid = centroid_of(positions, face);
+	state.centroid = face_centroid(positions, face);
 	if (!options.area_weights && options.unfold_cosine <= -1 && options.rest == nullptr)
 		return;
 	const Point cross = face_cross_product(positions, face);
@@ -125,7 +113,7 @@ Point way_aside(
 		normal += face.weight * face.normal;
 		across += face.centroid - x;
 	}
-	if (normal.isZero(0) || workspace.edges.boundary[at(vertex)] != 0)
+	if (normal.isZero(0) || workspace.edges.irregular[at(vertex)] != 0)
 		return Point::Zero();
 	across /= static_cast<double>(workspace.vertex_faces.size(vertex));
 	return UNFOLDING_STEP * (across - across.dot(normal) / normal.squaredNorm() * normal);

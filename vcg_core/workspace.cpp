@@ -5,12 +5,6 @@
 
 namespace orthopoly {
 
-namespace {
-
-constexpr Index GRAIN = 2048;
-
-} // namespace
-
 Workspace::Workspace(const TriangleMesh& given_mesh, Execution& given_execution) :
 		mesh(given_mesh), execution(given_execution),
 		vertex_faces(orthopoly::vertex_faces(given_mesh.vertex_count(), given_mesh.faces)),
@@ -25,8 +19,18 @@ Point cross_product_around(
 	Point sum = Point::Zero();
 	const Index* const last = workspace.vertex_faces.end(vertex);
 	for (const Index* face = workspace.vertex_faces.begin(vertex); face != last; ++face)
-		sum += face_cross_product(positions, workspace.mesh.faces[static_cast<std::size_t>(*face)]);
+		sum += face_cross_product(positions, workspace.mesh.faces[at(*face)]);
 	return sum;
+}
+
+std::vector<Point>
+cross_products_around(const Workspace& workspace, const std::vector<Point>& positions)
+{
+	std::vector<Point> sums(positions.size());
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		sums[i] = cross_product_around(workspace, positions, static_cast<Index>(i));
+	});
+	return sums;
 }
 
 double mean_edge_square_around(
@@ -35,7 +39,7 @@ double mean_edge_square_around(
 	const Index* const end = workspace.vertex_faces.end(vertex);
 	double sum = 0;
 	for (const Index* it = workspace.vertex_faces.begin(vertex); it != end; ++it)
-		sum += edge_squares(positions, workspace.mesh.faces[static_cast<std::size_t>(*it)]);
+		sum += edge_squares(positions, workspace.mesh.faces[at(*it)]);
 	const Index edges = 3 * workspace.vertex_faces.size(vertex);
 	return edges > 0 ? sum / static_cast<double>(edges) : 0;
 }
@@ -63,24 +67,23 @@ double mean_edge_length(const Workspace& workspace, const std::vector<Point>& po
 std::vector<std::uint8_t>
 folded_faces(const std::vector<Point>& positions, const Workspace& workspace)
 {
-	std::vector<RingCollector> rings = workspace.ring_collectors();
-	std::vector<std::uint8_t> flags(workspace.mesh.faces.size(), 0);
-	workspace.execution.parallel_for(
-		workspace.mesh.face_count(), GRAIN, [&](Index begin, Index end, int worker) {
-			const auto cross = [&](Index face) {
-				return face_cross_product(
-					positions, workspace.mesh.faces[static_cast<std::size_t>(face)]);
-			};
-			RingCollector& ring = rings[static_cast<std::size_t>(worker)];
-			for (Index i = begin; i < end; ++i) {
-				ring.collect(i, 1);
-				// The face itself comes first.
-				Point around = Point::Zero();
-				for (std::size_t k = 1; k < ring.faces().size(); ++k)
-					around += cross(ring.faces()[k]);
-				flags[static_cast<std::size_t>(i)] = cross(i).dot(around) < 0 ? 1 : 0;
+	const std::vector<Face>& faces = workspace.mesh.faces;
+	std::vector<std::uint8_t> flags(faces.size(), 0);
+	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
+		const Face& face = faces[i];
+		Point around = Point::Zero();
+		for (auto corner = face.begin(); corner != face.end(); ++corner) {
+			const Index* const end = workspace.vertex_faces.end(*corner);
+			for (const Index* it = workspace.vertex_faces.begin(*corner); it != end; ++it) {
+				const Face& other = faces[at(*it)];
+				// Each once: those at an earlier corner have been counted there.
+				if (at(*it) != i &&
+					std::find_first_of(face.begin(), corner, other.begin(), other.end()) == corner)
+					around += face_cross_product(positions, other);
 			}
-		});
+		}
+		flags[i] = face_cross_product(positions, face).dot(around) < 0 ? 1 : 0;
+	});
 	return flags;
 }
 

@@ -38,6 +38,18 @@ struct Workspace {
 Point cross_product_around(
 	const Workspace& workspace, const std::vector<Point>& positions, Index vertex);
 
+/// The same around every vertex, #V.
+std::vector<Point>
+cross_products_around(const Workspace& workspace, const std::vector<Point>& positions);
+
+/// Sum of the cross products of the faces beside a face, from its own and those `sums` around all
+/// vertices. Neighbours across an edge count twice.
+inline Point
+cross_product_beside(const Face& face, const Point& own, const std::vector<Point>& sums)
+{
+	return -3 * own + sums[at(face[0])] + sums[at(face[1])] + sums[at(face[2])];
+}
+
 /// Mean square of the lengths of the edges of the faces around a vertex; zero for one without a
 /// face.
 double mean_edge_square_around(

@@ -187,7 +187,7 @@ void print_result(const TriangleMesh& mesh, const DenoiseResult& result, double 
 				  << parameter.format(parameter.get(result.resolved));
 	std::cout << "\n  iterations " << result.iterations_done << ", folded faces "
 			  << result.folded_faces_before << " before and " << result.folded_faces_after
-			  << " after, vertices moved " << result.moved_vertices << " (root mean square "
+			  << " after, vertices moved " << result.moved_vertices << " (mean "
 			  << result.mean_displacement << ", most " << result.max_displacement << ")\n";
 	if (result.degenerate_faces > 0 || result.non_manifold_edges > 0)
 		std::cout << "  left out: " << result.degenerate_faces << " faces without area; "

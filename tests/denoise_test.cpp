@@ -181,6 +181,16 @@ TEST_CASE("the resolved options give the same result again", "[denoise]")
 	CHECK(second.resolved.cos_threshold == first.resolved.cos_threshold);
 }
 
+TEST_CASE("the widest guides resolve to a structure ring that is accepted", "[denoise]")
+{
+	DenoiseOptions options = options_of(Method::Paper);
+	options.guide_ring = 10;
+	options.iterations = 1;
+	const DenoiseResult result = run(with_noise(make_part(600), 0.2), options);
+	CHECK(result.resolved.structure_ring == 10);
+	CHECK_NOTHROW(validate(result.resolved));
+}
+
 TEST_CASE("every class of mesh gets through every method", "[denoise]")
 {
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);

@@ -29,10 +29,13 @@ constexpr double COS_THRESHOLD_INCREMENT = 0.05;
 // At a cosine of 1 no direction is similar to any other, its own included.
 constexpr double LARGEST_COS_THRESHOLD = 1.0 - 1e-6;
 
-// The paper leaves R open; one ring more than the structures it looks for.
+// The paper leaves R open; one ring more than the structures it looks for, as far as the parameter
+// goes.
+constexpr int LARGEST_STRUCTURE_RING = 10;
+
 int default_structure_ring(const DenoiseOptions& options)
 {
-	return options.guide_ring + 1;
+	return std::min(LARGEST_STRUCTURE_RING, options.guide_ring + 1);
 }
 
 DenoiseOptions resolve(DenoiseOptions options)

@@ -63,14 +63,14 @@ void report_or_stop(Progress& progress, double fraction, const char* words)
 VcgArrays read_layer(const MeshModel& layer, VcgRegion region)
 {
 	const std::string label = label_of(layer);
-	if (layer.hasDataMask(MeshModel::MM_POLYGONAL)) {
-		const Index polygons = count_polygons(layer.cm);
-		if (polygons > 0)
-			throw InvalidMesh(
-				"layer " + label + " has " + count_of(polygons, "polygon", "polygons") +
-				" with more than three corners; apply 'Turn into Pure-Triangular mesh' "
-				"(meshing_poly_to_tri in Python) to it first");
-	}
+	// Whatever the layer's MM_POLYGONAL says: what subdivides into quads in MeshLab 2025.07 leaves
+	// it unset.
+	const Index polygons = count_polygons(layer.cm);
+	if (polygons > 0)
+		throw InvalidMesh(
+			"layer " + label + " has " + count_of(polygons, "polygon", "polygons") +
+			" with more than three corners; apply 'Turn into a Pure-Triangular mesh' "
+			"(meshing_poly_to_tri in Python) to it first");
 	if (layer.cm.fn == 0)
 		throw InvalidMesh(
 			"layer " + label + " has " + count_of(layer.cm.vn, "vertex", "vertices") +

@@ -13,7 +13,9 @@ NOISE = "Gaussian Noise"
 
 # Filters of MeshLab itself that the tests need. The same names and types in all versions.
 SELECT = "Conditional Face Selection"
+TRIANGULATE = "Turn into a Pure-Triangular mesh"
 OTHERS = {
+    TRIANGULATE: [],
     SELECT: [
         {"name": "condSelect", "type": "RichString", "default": "(q < 0)"},
     ],

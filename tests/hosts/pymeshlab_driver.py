@@ -44,6 +44,11 @@ def run(step, meshes):
         data = np.load(step["path"])
         meshes.add_mesh(pymeshlab.Mesh(data["positions"], data["faces"]) if len(data["faces"])
                         else pymeshlab.Mesh(data["positions"]))
+    elif kind == "add_polygons":
+        data = json.loads(pathlib.Path(step["path"]).read_text())
+        meshes.add_mesh(pymeshlab.Mesh(
+            vertex_matrix=np.array(data["positions"], dtype=float),
+            face_list_of_indices=[np.array(face, dtype=np.uint32) for face in data["faces"]]))
     elif kind == "current":
         meshes.set_current_mesh(step["id"])
     elif kind == "script":

@@ -2,6 +2,8 @@
 """What a filter cannot work on, in every host: a message that names the problem and the cure, the
 host alive, the mesh as it was."""
 
+import json
+
 import mlx
 import numpy as np
 import ply
@@ -90,9 +92,58 @@ def test_polygons(host, tmp_path, script, clean_and_noisy, name):
     quads = ply.write(tmp_path / "quads.ply", corners, [[0, 1, 4, 3], [1, 2, 5, 4], [2, 6, 5]])
     outcome = host.run_script(tmp_path, script((name, {})), [clean_and_noisy[0], quads])
     assert not outcome.ok
-    assert "2 polygons" in outcome.log and "Turn into Pure-Triangular mesh" in outcome.log
+    assert "2 polygons" in outcome.log and f"'{mlx.TRIANGULATE}'" in outcome.log
     if outcome.mesh is not None:
         assert np.array_equal(outcome.mesh.positions, np.array(corners))
+    # The cure is a filter of this host under the name that the message has for it.
+    cured = host.run_script(
+        tmp_path, script((mlx.TRIANGULATE, {}), (name, {})), [clean_and_noisy[0], quads])
+    assert cured.ok, cured.log
+    assert len(cured.mesh.faces) == 5
+
+
+def test_polygons_from_arrays(pymeshlab, tmp_path):
+    corners = [[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0], [3, 0.5, 0]]
+    for name, faces in (("triangles", [[0, 1, 4], [0, 4, 3]]), ("quads", [[0, 1, 4, 3], [1, 2, 5, 4]])):
+        (tmp_path / f"{name}.json").write_text(json.dumps({"positions": corners, "faces": faces}))
+    steps = [
+        {"do": "add_polygons", "path": tmp_path / "triangles.json"},
+        {"do": "filter", "name": "apply_coord_gaussian_noise"},
+        {"do": "add_polygons", "path": tmp_path / "quads.json"},
+    ]
+    check_polygons(pymeshlab, tmp_path, steps, "2 polygons", corners)
+
+
+def test_polygons_of_a_subdivision(pymeshlab, tmp_path):
+    """In 2025.07 such layers do not carry the mark that polygons else have."""
+    positions, faces = shapes.cube(2)
+    np.savez(tmp_path / "cube.npz", positions=positions, faces=faces)
+    steps = [
+        {"do": "add", "path": tmp_path / "cube.npz"},
+        {"do": "filter", "name": "meshing_surface_subdivision_loop"},
+        {"do": "filter", "name": "apply_coord_gaussian_noise"},
+        {"do": "add", "path": tmp_path / "cube.npz"},
+        {"do": "filter", "name": "meshing_surface_subdivision_catmull_clark"},
+        {"do": "save", "path": tmp_path / "before.npz"},
+    ]
+    check_polygons(pymeshlab, tmp_path, steps, "polygons")
+
+
+def check_polygons(pymeshlab, folder, steps, words, positions=None):
+    """All filters refuse what the steps have made, leave it alone and take it once it is cured."""
+    refused = [{"do": "filter", "name": entry["python_name"]} for entry in mlx.TABLE["filters"]]
+    cured = [
+        {"do": "save", "path": folder / "after.npz"},
+        {"do": "filter", "name": "meshing_poly_to_tri"},
+        {"do": "filter", "name": "apply_coord_gaussian_noise"},
+    ]
+    results, log = pymeshlab.run_steps(folder, [*steps, *refused, *cured])
+    first, last = len(steps), len(steps) + len(refused)
+    assert all(result["ok"] for result in results[:first] + results[last:]), log
+    for result in results[first:last]:
+        assert not result["ok"] and words in result["error"], log
+    before = np.load(folder / "before.npz")["positions"] if positions is None else positions
+    assert np.array_equal(np.load(folder / "after.npz")["positions"], before)
 
 
 def test_reference_without_faces(host, tmp_path, script, clean_and_noisy):

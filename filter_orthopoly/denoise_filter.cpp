@@ -50,13 +50,23 @@ std::optional<Comparison> start_comparison(FilterRun& run, const VcgArrays& arra
 	return comparison;
 }
 
+bool may_be_automatic(const ParameterInfo& entry)
+{
+	return entry.can_be_automatic || (!entry.choices.empty() && entry.choices.front() == "auto");
+}
+
+bool is_automatic(const ParameterInfo& entry, double value)
+{
+	return may_be_automatic(entry) && value == (entry.can_be_automatic ? AUTOMATIC : 0);
+}
+
 // The values that the method chose itself.
 std::string describe_resolved(const DenoiseOptions& given, const DenoiseOptions& resolved)
 {
 	std::string text;
 	for (const Parameter<DenoiseOptions>& entry : denoise_parameters()) {
 		const double value = entry.get(resolved);
-		if (!entry.can_be_automatic || entry.get(given) != AUTOMATIC || value == AUTOMATIC)
+		if (!is_automatic(entry, entry.get(given)) || is_automatic(entry, value))
 			continue;
 		text += (text.empty() ? "chosen: " : ", ") + entry.name + " = " + entry.format(value);
 	}
@@ -68,14 +78,25 @@ void report_resolved(FilterRun& run, const DenoiseOptions& resolved)
 	for (const Parameter<DenoiseOptions>& entry : denoise_parameters()) {
 		const double value = entry.get(resolved);
 		// What the method does not use stays automatic.
-		if (!entry.can_be_automatic || value == AUTOMATIC)
+		if (!may_be_automatic(entry) || is_automatic(entry, value))
 			continue;
 		const std::string name = "resolved_" + entry.name;
 		if (entry.type == ParameterType::Real)
 			run.outputs.emplace_back(name, value);
 		else
+			// Of a choice, its number: pymeshlab does not hand words on.
 			run.outputs.emplace_back(name, static_cast<int>(value));
 	}
+}
+
+std::string describe_nothing_to_do(const DenoiseOptions& options)
+{
+	if (options.noise_level)
+		return "noise_level is " + in_words(*options.noise_level) +
+			   ", so there is nothing to remove and the mesh is left as it is; raise noise_level, or set "
+			   "it to -1 to have the noise estimated";
+	return "there is no noise worth removing, so the mesh is left as it is; set noise_level to denoise "
+		   "it all the same";
 }
 
 void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseResult& result)
@@ -87,9 +108,7 @@ void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseR
 			" mean edge lengths (estimated)" +
 			(options.noise_level ? ", taken as " + in_words(*options.noise_level) : ""));
 	if (nothing_to_do)
-		run.log(
-			"there is no noise worth removing, so the mesh is left as it is; set noise_level to denoise "
-			"it all the same");
+		run.log(describe_nothing_to_do(options));
 	const std::string resolved = describe_resolved(options, result.resolved);
 	if (!resolved.empty())
 		run.log(resolved);

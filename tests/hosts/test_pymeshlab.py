@@ -26,6 +26,8 @@ ERROR_OUTPUTS = {
     "relative_vertex_error": float, "max_distance": float, "folded_faces": int,
     "measured_faces": int,
 }
+KINDS_OF_NOISE = next(
+    p["choices"] for p in mlx.TABLE["filters"][0]["parameters"] if p["name"] == "noise_type")
 
 
 def load(*paths):
@@ -51,7 +53,11 @@ def check_types(outputs, expected):
 
 def test_denoising_returns_what_it_did(pymeshlab, tmp_path, clean_and_noisy):
     (outputs,) = outputs_of(pymeshlab, tmp_path, load(clean_and_noisy[1]) + [apply(DENOISE)])
-    check_types(outputs, {**DENOISE_OUTPUTS, "estimated_noise": float})
+    check_types(
+        outputs,
+        {**DENOISE_OUTPUTS, "estimated_noise": float, "resolved_noise_level": float,
+         "resolved_noise_type": int})
+    assert outputs["resolved_noise_type"] == KINDS_OF_NOISE.index("white")
     assert 0.05 < outputs["estimated_noise"] < 0.3
     assert 0 < outputs["moved_vertices"] <= 866
     assert 0 < outputs["mean_displacement"] < outputs["max_displacement"] < 1
@@ -190,6 +196,30 @@ def test_a_clean_mesh_is_told_so(pymeshlab, tmp_path, clean_and_noisy):
     assert "no noise worth removing" in log
     after = np.load(tmp_path / "a.npz")["positions"]
     assert np.array_equal(after, ply.read(clean_and_noisy[0]).positions)
+
+
+def test_what_is_said_of_a_level_that_leaves_nothing(pymeshlab, tmp_path, clean_and_noisy):
+    """Who has set noise_level is not told to set it."""
+    results, log = pymeshlab.run_steps(
+        tmp_path, load(clean_and_noisy[1]) + [apply(DENOISE, noise_level=0)])
+    outputs = results[1]["outputs"]
+    assert outputs["nothing_to_do"] is True and outputs["moved_vertices"] == 0
+    assert "noise_level is 0" in log and "set noise_level" not in log
+
+
+def test_choices_of_the_method_are_told_and_can_be_given(pymeshlab, tmp_path, clean_and_noisy):
+    steps = load(clean_and_noisy[1]) + [apply(DENOISE)]
+    results, log = pymeshlab.run_steps(tmp_path, steps)
+    outputs = results[1]["outputs"]
+    kind = KINDS_OF_NOISE[outputs["resolved_noise_type"]]
+    assert f"chosen: noise_type = {kind}, noise_level = " in log
+    given = {"noise_type": outputs["resolved_noise_type"]}
+    assert outputs_of(
+        pymeshlab, tmp_path, load(clean_and_noisy[1]) + [apply(DENOISE, **given)]) == [outputs]
+    # What is given is not said to be chosen, and the paper's method chooses no such thing.
+    for arguments in (given, {"method": "paper"}):
+        steps = load(clean_and_noisy[1]) + [apply(DENOISE, **arguments)]
+        assert "noise_type = " not in pymeshlab.run_steps(tmp_path, steps)[1]
 
 
 def test_progress_has_words_and_never_falls(pymeshlab, tmp_path, clean_and_noisy):

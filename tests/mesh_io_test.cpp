@@ -468,9 +468,6 @@ TEST_CASE("a save that fails leaves the file that was there", "[mesh_io]")
 	TriangleMesh broken = unit_square();
 	broken.faces[1][2] = 9;
 	CHECK_THROWS_WITH(save_mesh(path, broken), Contains("face 1") && Contains("index 9"));
-	MeshAttributes attributes;
-	attributes.vertex_quality = {1, 2};
-	CHECK_THROWS_WITH(save_mesh(path, unit_square(), attributes), Contains("vertex qualities"));
 	CHECK(content_of(path) == before);
 	// Where a folder is in the way, the rename fails after all has been written.
 	std::filesystem::create_directories(folder.file("taken.off/inside"));
@@ -486,26 +483,6 @@ TEST_CASE("an existing file is replaced, a link stays a link", "[mesh_io]")
 	save_mesh(folder.file("link.off"), tetrahedron());
 	CHECK(std::filesystem::is_symlink(folder.file("link.off")));
 	CHECK(load_mesh(folder.file("a.off")).face_count() == 4);
-}
-
-TEST_CASE("colours and qualities are written where the format has them", "[mesh_io]")
-{
-	const TemporaryFolder folder;
-	MeshAttributes attributes;
-	attributes.face_colors = {{255, 0, 7}, {1, 2, 3}};
-	attributes.face_quality = {0.5, 1e-300};
-	attributes.vertex_quality = {1, 2, 3, 4};
-	const std::string ply = folder.file("mesh.ply");
-	save_mesh(ply, unit_square(), attributes);
-	CHECK(load_mesh(ply).faces == unit_square().faces);
-	const std::string content = content_of(ply);
-	CHECK_THAT(content, Contains("property double quality"));
-	CHECK_THAT(content, Contains("property uchar red"));
-	const std::string first_color("\xff\x00\x07\xff", 4);
-	CHECK(content.find(first_color) != std::string::npos);
-	save_mesh(folder.file("mesh.off"), unit_square(), attributes);
-	CHECK_THAT(content_of(folder.file("mesh.off")), Contains("3 0 1 2 255 0 7\n3 0 2 3 1 2 3\n"));
-	CHECK(load_mesh(folder.file("mesh.off")).faces == unit_square().faces);
 }
 
 TEST_CASE("files do not depend on the locale", "[mesh_io]")

@@ -29,17 +29,8 @@ class FileVertex;
 class FileFace;
 struct FileTypes :
 		vcg::UsedTypes<vcg::Use<FileVertex>::AsVertexType, vcg::Use<FileFace>::AsFaceType> {};
-class FileVertex :
-		public vcg::
-			Vertex<FileTypes, vcg::vertex::Coord3d, vcg::vertex::Qualityd, vcg::vertex::BitFlags> {
-};
-class FileFace :
-		public vcg::Face<
-			FileTypes,
-			vcg::face::VertexRef,
-			vcg::face::Color4b,
-			vcg::face::Qualityd,
-			vcg::face::BitFlags> {};
+class FileVertex : public vcg::Vertex<FileTypes, vcg::vertex::Coord3d, vcg::vertex::BitFlags> {};
+class FileFace : public vcg::Face<FileTypes, vcg::face::VertexRef, vcg::face::BitFlags> {};
 class FileMesh : public vcg::tri::TriMesh<std::vector<FileVertex>, std::vector<FileFace>> {};
 
 using Mask = vcg::tri::io::Mask;
@@ -48,11 +39,10 @@ using Mask = vcg::tri::io::Mask;
 struct Format {
 	const char* ending;
 	TriangleMesh (*load)(std::string_view content);
-	void (*save)(
-		const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes);
+	void (*save)(const std::string& path, const TriangleMesh& mesh);
 };
 
-void fill(FileMesh& file, const TriangleMesh& mesh, const MeshAttributes& attributes)
+void fill(FileMesh& file, const TriangleMesh& mesh)
 {
 	using Allocator = vcg::tri::Allocator<FileMesh>;
 	Allocator::AddVertices(file, mesh.positions.size());
@@ -60,19 +50,11 @@ void fill(FileMesh& file, const TriangleMesh& mesh, const MeshAttributes& attrib
 	for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
 		const Point& point = mesh.positions[i];
 		file.vert[i].P() = FileMesh::CoordType(point.x(), point.y(), point.z());
-		if (!attributes.vertex_quality.empty())
-			file.vert[i].Q() = attributes.vertex_quality[i];
 	}
 	for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
 		for (int k = 0; k < 3; ++k)
 			file.face[i].V(k) =
 				&file.vert[static_cast<std::size_t>(mesh.faces[i][static_cast<std::size_t>(k)])];
-		if (!attributes.face_colors.empty()) {
-			const auto& [red, green, blue] = attributes.face_colors[i];
-			file.face[i].C() = vcg::Color4b(red, green, blue, 255);
-		}
-		if (!attributes.face_quality.empty())
-			file.face[i].Q() = attributes.face_quality[i];
 	}
 }
 
@@ -85,38 +67,25 @@ void check_written(const std::string& path, std::size_t smallest_size)
 		throw FileError("not everything could be written; is the disk full?");
 }
 
-void save_ply(const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes)
+void save_ply(const std::string& path, const TriangleMesh& mesh)
 {
 	using Exporter = vcg::tri::io::ExporterPLY<FileMesh>;
-	int mask = Mask::IOM_VERTCOORD | Mask::IOM_FACEINDEX;
-	std::size_t vertex_size = 3 * sizeof(double);
-	std::size_t face_size = 1 + 3 * sizeof(std::int32_t);
-	if (!attributes.vertex_quality.empty()) {
-		mask |= Mask::IOM_VERTQUALITY;
-		vertex_size += sizeof(double);
-	}
-	if (!attributes.face_colors.empty()) {
-		mask |= Mask::IOM_FACECOLOR;
-		face_size += 4;
-	}
-	if (!attributes.face_quality.empty()) {
-		mask |= Mask::IOM_FACEQUALITY;
-		face_size += sizeof(double);
-	}
+	constexpr int mask = Mask::IOM_VERTCOORD | Mask::IOM_FACEINDEX;
+	constexpr std::size_t vertex_size = 3 * sizeof(double);
+	constexpr std::size_t face_size = 1 + 3 * sizeof(std::int32_t);
 	FileMesh file;
-	fill(file, mesh, attributes);
+	fill(file, mesh);
 	const int error = Exporter::Save(file, path.c_str(), mask, true);
 	if (error != 0)
 		throw FileError(Exporter::ErrorMsg(error));
 	check_written(path, mesh.positions.size() * vertex_size + mesh.faces.size() * face_size);
 }
 
-void save_stl(
-	const std::string& path, const TriangleMesh& mesh, const MeshAttributes& /*attributes*/)
+void save_stl(const std::string& path, const TriangleMesh& mesh)
 {
 	using Exporter = vcg::tri::io::ExporterSTL<FileMesh>;
 	FileMesh file;
-	fill(file, mesh, {});
+	fill(file, mesh);
 	const int error = Exporter::Save(file, path.c_str(), true);
 	if (error != 0)
 		throw FileError(Exporter::ErrorMsg(error));
@@ -132,13 +101,12 @@ void write_text(const std::string& path, const std::string& text)
 		throw FileError(std::strerror(errno));
 }
 
-void save_off(const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes)
+void save_off(const std::string& path, const TriangleMesh& mesh)
 {
-	write_text(path, format_off(mesh, attributes.face_colors));
+	write_text(path, format_off(mesh));
 }
 
-void save_obj(
-	const std::string& path, const TriangleMesh& mesh, const MeshAttributes& /*attributes*/)
+void save_obj(const std::string& path, const TriangleMesh& mesh)
 {
 	write_text(path, format_obj(mesh));
 }
@@ -205,17 +173,8 @@ std::filesystem::path temporary_name(const std::filesystem::path& path)
 	return name;
 }
 
-void check_sizes(const TriangleMesh& mesh, const MeshAttributes& attributes)
+void check_indices(const TriangleMesh& mesh)
 {
-	const auto check = [](const char* name, std::size_t size, std::size_t count) {
-		if (size != 0 && size != count)
-			throw FileError(
-				"there are " + std::to_string(size) + " " + name + " for " + std::to_string(count) +
-				" elements; give one each, or none");
-	};
-	check("face colours", attributes.face_colors.size(), mesh.faces.size());
-	check("face qualities", attributes.face_quality.size(), mesh.faces.size());
-	check("vertex qualities", attributes.vertex_quality.size(), mesh.positions.size());
 	for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
 		for (const Index vertex : mesh.faces[i]) {
 			if (vertex < 0 || vertex >= mesh.vertex_count())
@@ -252,16 +211,16 @@ TriangleMesh load_mesh(const std::string& path)
 	});
 }
 
-void save_mesh(const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes)
+void save_mesh(const std::string& path, const TriangleMesh& mesh)
 {
 	naming_the_file(path, [&]() {
 		const Format& format = format_of(path);
-		check_sizes(mesh, attributes);
+		check_indices(mesh);
 		// A link stays a link: the file it points at is the one to replace.
 		const std::filesystem::path target = std::filesystem::weakly_canonical(path);
 		const std::filesystem::path temporary = temporary_name(target);
 		try {
-			format.save(temporary.string(), mesh, attributes);
+			format.save(temporary.string(), mesh);
 			std::filesystem::rename(temporary, target);
 		}
 		catch (...) {

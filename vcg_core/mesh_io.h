@@ -3,35 +3,22 @@
 
 #include "triangle_mesh.h"
 
-#include <array>
-#include <cstdint>
 #include <string>
-#include <vector>
 
 namespace orthopoly {
 
 /// Reads PLY (both kinds), OBJ, OFF or STL, told apart by the name's ending.
 ///
 /// Vertices and faces keep the order of the file; the corners of an STL file that have the same
-/// coordinates become one vertex (in the order of their first mention). Polygons are an error.
+/// coordinates become one vertex (in the order of their first mention). Polygons are an error; what
+/// else the file holds (colours, normals, texture coordinates, materials) is passed over.
 /// Throws FileError with the file's name and what is wrong.
 TriangleMesh load_mesh(const std::string& path);
-
-/// What may be written beside positions and faces.
-struct MeshAttributes {
-	/// #F red, green, blue (0 to 255), or empty. PLY and OFF only.
-	std::vector<std::array<std::uint8_t, 3>> face_colors;
-	/// #F, or empty. PLY only.
-	std::vector<double> face_quality;
-	/// #V, or empty. PLY only.
-	std::vector<double> vertex_quality;
-};
 
 /// Writes PLY (binary, double precision), OBJ, OFF or STL (binary), told apart by the name's
 /// ending; PLY and STL through vcglib. Throws FileError; nothing is left behind under the name
 /// where writing failed.
-void save_mesh(
-	const std::string& path, const TriangleMesh& mesh, const MeshAttributes& attributes = {});
+void save_mesh(const std::string& path, const TriangleMesh& mesh);
 
 /// Throws FileError where the ending of the name or its folder would make save_mesh fail: worth
 /// knowing before a long computation.

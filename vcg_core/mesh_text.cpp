@@ -5,9 +5,12 @@
 #include "text_scanner.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <unordered_map>
+#include <vector>
 
 namespace orthopoly {
 
@@ -295,21 +298,16 @@ TriangleMesh parse_stl(std::string_view content)
 		" facets would not have " + std::to_string(content.size()) + " bytes; it may be cut short");
 }
 
-std::string
-format_off(const TriangleMesh& mesh, const std::vector<std::array<std::uint8_t, 3>>& face_colors)
+std::string format_off(const TriangleMesh& mesh)
 {
 	std::string text = "OFF\n" + std::to_string(mesh.vertex_count()) + " " +
 					   std::to_string(mesh.face_count()) + " 0\n";
 	for (const Point& point : mesh.positions)
 		append_point(point, text);
-	for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+	for (const Face& face : mesh.faces) {
 		text += '3';
-		for (const Index vertex : mesh.faces[i])
+		for (const Index vertex : face)
 			text += " " + std::to_string(vertex);
-		if (!face_colors.empty()) {
-			for (const std::uint8_t channel : face_colors[i])
-				text += " " + std::to_string(channel);
-		}
 		text += '\n';
 	}
 	return text;

@@ -3,11 +3,8 @@
 
 #include "triangle_mesh.h"
 
-#include <array>
-#include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace orthopoly {
 
@@ -25,9 +22,8 @@ TriangleMesh parse_obj(std::string_view text);
 /// Reads an STL file of either kind. Corners with the same coordinates become one vertex.
 TriangleMesh parse_stl(std::string_view content);
 
-/// An OFF file in which every coordinate reads back bit for bit; colours (#F) may be empty.
-std::string
-format_off(const TriangleMesh& mesh, const std::vector<std::array<std::uint8_t, 3>>& face_colors);
+/// An OFF file in which every coordinate reads back bit for bit.
+std::string format_off(const TriangleMesh& mesh);
 
 /// An OBJ file in which every coordinate reads back bit for bit.
 std::string format_obj(const TriangleMesh& mesh);

@@ -342,11 +342,14 @@ int run(int argc, char** argv)
 	app.set_version_flag("--version", std::string("orthopoly ") + ORTHOPOLY_VERSION);
 	app.require_subcommand(1);
 	const char* const mesh_file = "mesh file: .ply, .obj, .off or .stl";
+	const char* const written_file =
+		"mesh file: .ply, .obj, .off or .stl. Gets vertices and faces only: colours, normals, "
+		"texture coordinates and materials of IN are left out";
 
 	DenoiseArguments denoise_arguments;
 	CLI::App* denoise_command = app.add_subcommand("denoise", "Take the noise off a mesh");
 	denoise_command->add_option("IN", denoise_arguments.input, mesh_file)->required();
-	denoise_command->add_option("OUT", denoise_arguments.output, mesh_file)->required();
+	denoise_command->add_option("OUT", denoise_arguments.output, written_file)->required();
 	denoise_command->add_option(
 		"--method", denoise_arguments.method, "adaptive (the default) or paper");
 	denoise_command
@@ -368,7 +371,7 @@ int run(int argc, char** argv)
 	NoiseArguments noise_arguments;
 	CLI::App* noise_command = app.add_subcommand("noise", "Put Gaussian noise on a mesh");
 	noise_command->add_option("IN", noise_arguments.input, mesh_file)->required();
-	noise_command->add_option("OUT", noise_arguments.output, mesh_file)->required();
+	noise_command->add_option("OUT", noise_arguments.output, written_file)->required();
 	noise_command
 		->add_option("--sigma", noise_arguments.sigma, "standard deviation in mean edge lengths")
 		->required();

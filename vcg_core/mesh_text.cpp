@@ -64,10 +64,13 @@ Index obj_vertex(const TextScanner& line, std::size_t word, std::size_t vertex_c
 		line.fail(
 			"corner " + std::to_string(word) +
 			" of the face does not begin with the number of a vertex (1 is the first)");
-	return checked_index(
-		line,
-		vertex > 0 ? vertex - 1 : static_cast<long long>(vertex_count) + vertex,
-		vertex_count);
+	const auto count = static_cast<long long>(vertex_count);
+	const long long index = vertex > 0 ? vertex - 1 : count + vertex;
+	if (index < 0 || index >= count)
+		line.fail(
+			"the face has vertex index " + std::to_string(vertex) + ", there are " +
+			std::to_string(count) + " vertices so far (1 is the first, -1 the last of them)");
+	return static_cast<Index>(index);
 }
 
 // Collects the loose triangles of an STL file; the same coordinates give the same vertex.

@@ -161,9 +161,9 @@ def of_scan(row):
 
 
 def make_noise(case, target):
-	kind = ["--kind", case.kind]
+	kind = ["--direction", case.kind]
 	if case.kind == "impulsive":
-		kind = ["--kind", "random", "--impulsive", IMPULSIVE_SHARE]
+		kind = ["--direction", "random", "--impulsive-share", IMPULSIVE_SHARE]
 	# Meshes get draws of their own even with one seed.
 	seed = int(hashlib.sha256(f"{case.model} {case.seed}".encode()).hexdigest()[:7], 16)
 	tools.orthopoly("noise", case.truth, target, "--sigma", case.sigma, *kind, "--seed", seed)

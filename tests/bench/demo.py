@@ -74,8 +74,8 @@ def main():
 	shutil.rmtree(OUT, ignore_errors=True)
 	OUT.mkdir(parents=True)
 	shutil.copy(hosts.BUILD / "meshes" / "part.ply", OUT / "reference.ply")
-	orthopoly("noise", OUT / "reference.ply", OUT / "noise.ply", "--sigma", SIGMA, "--kind", "random",
-		"--seed", 1)
+	orthopoly("noise", OUT / "reference.ply", OUT / "noise.ply", "--sigma", SIGMA,
+		"--direction", "random", "--seed", 1)
 	print(f"   build/meshes/part.ply with noise of {SIGMA} mean edge lengths in random directions")
 
 	legacy = (hosts.BUILD / "plugins" / "meshlab-2020.09").is_dir() and shutil.which("meshlabserver")

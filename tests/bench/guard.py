@@ -177,7 +177,7 @@ def main():
 		while faces <= arguments.max_faces:
 			clean, = tools.generated_meshes(folder, ["part"], faces)
 			noisy = folder / "noisy.ply"
-			tools.orthopoly("noise", clean, noisy, "--sigma", arguments.sigma, "--kind", "normal")
+			tools.orthopoly("noise", clean, noisy, "--sigma", arguments.sigma, "--direction", "normal")
 			for method in arguments.methods.split(","):
 				row = {"method": method, "faces": faces}
 				row.update(compare(programs, method, noisy, folder, arguments))

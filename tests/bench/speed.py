@@ -342,7 +342,8 @@ def make_mesh(folder, faces, arguments):
 	clean, = tools.generated_meshes(folder, ["part"], faces)
 	noisy = folder / f"part_{faces}.ply"
 	tools.orthopoly(
-		"noise", clean, noisy, "--sigma", arguments.sigma, "--kind", arguments.kind, "--seed", 1)
+		"noise", clean, noisy, "--sigma", arguments.sigma, "--direction", arguments.direction,
+		"--seed", 1)
 	clean.replace(folder / "clean.ply")
 	with noisy.open("rb") as file:
 		header = file.read(2000)
@@ -402,7 +403,7 @@ def arguments_of_the_command_line():
 		"--budget", type=float, default=300,
 		help="no further repeat once they have taken so many seconds (default: 300)")
 	parser.add_argument("--sigma", type=float, default=0.3, help="mean edge lengths (default: 0.3)")
-	parser.add_argument("--kind", default="normal", help="of noise (default: normal)")
+	parser.add_argument("--direction", default="normal", help="of the noise (default: normal)")
 	arguments = parser.parse_args()
 	arguments.threads = [int(word) for word in arguments.threads.split(",")]
 	if arguments.repeats < 1 or min(arguments.threads) < 1:
@@ -444,7 +445,7 @@ def main():
 		methods[0], max(arguments.threads) if CONTENDERS[methods[0]].threaded else 1)
 	text = "\n".join([
 		f"# Speed\n\nCommit {tools.commit()}; {tools.processor()}. The mesh `part`, noise of "
-		f"{arguments.sigma:g} mean edge lengths, {arguments.kind}. Median of {arguments.repeats} runs "
+		f"{arguments.sigma:g} mean edge lengths, {arguments.direction}. Median of {arguments.repeats} runs "
 		"after one to warm up (MeshDenoiser: processes of their own, by its own clock), fewer where they "
 		f"took {arguments.budget:g} s; without reading and writing files. Memory: peak beyond the process "
 		"with the mesh loaded. 'Times the first': seconds over those of "

@@ -88,12 +88,15 @@ def test_noise_depends_on_its_options_alone(meshes, tmp_path):
         return file.read_bytes()
 
     first = noise("first")
-    assert first == noise("second", "--kind", "random", "--impulsive", 1, "--seed", 1)
+    assert first == noise("second", "--direction", "random", "--impulsive-share", 1, "--seed", 1)
     others = [
-        noise("seed", "--seed", 2), noise("normal", "--kind", "normal"),
-        noise("isotropic", "--kind", "isotropic"), noise("impulsive", "--impulsive", 0.3),
+        noise("seed", "--seed", 2), noise("normal", "--direction", "normal"),
+        noise("isotropic", "--direction", "isotropic"), noise("impulsive", "--impulsive-share", 0.3),
     ]
     assert len({first, *others}) == 5
+    # The names these options had before.
+    assert noise("kind", "--kind", "normal") == others[1]
+    assert noise("impulsive", "--impulsive", 0.3) == others[3]
 
 
 def test_every_format_in_and_out(meshes, tmp_path):
@@ -156,8 +159,10 @@ def test_info_counts_defects(meshes):
     (["denoise", "{noisy}", "{out}", "--reference", "{folder}/none.ply"], "none.ply"),
     (["noise", "{folder}/part.ply", "{out}"], "--sigma"),
     (["noise", "{folder}/part.ply", "{out}", "--sigma", "-1"], "sigma is -1"),
-    (["noise", "{folder}/part.ply", "{out}", "--sigma", "0.1", "--kind", "pink"], "'pink'"),
-    (["noise", "{folder}/part.ply", "{out}", "--sigma", "0.1", "--impulsive", "2"], "impulsive_share is 2"),
+    (["noise", "{folder}/part.ply", "{out}", "--sigma", "0.1", "--direction", "pink"],
+     "direction is 'pink'"),
+    (["noise", "{folder}/part.ply", "{out}", "--sigma", "0.1", "--impulsive-share", "2"],
+     "impulsive_share is 2"),
     (["measure", "{folder}/points_only.ply", "{noisy}"], "reference"),
     (["measure", "{noisy}", "{folder}/points_only.ply"], "no"),
     (["info", "{folder}"], "must end in"),

@@ -376,9 +376,11 @@ int run(int argc, char** argv)
 		->add_option("--sigma", noise_arguments.sigma, "standard deviation in mean edge lengths")
 		->required();
 	noise_command->add_option(
-		"--kind", noise_arguments.direction, "random (the default), normal or isotropic");
+		"--direction,--kind",
+		noise_arguments.direction,
+		"random (the default), normal or isotropic");
 	noise_command->add_option(
-		"--impulsive",
+		"--impulsive-share,--impulsive",
 		noise_arguments.impulsive_share,
 		"share of the vertices that are moved, 0 to 1");
 	noise_command->add_option("--seed", noise_arguments.seed, "same seed, same noise");

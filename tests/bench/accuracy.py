@@ -296,8 +296,6 @@ def means_table(rows, methods):
 
 def estimate_of(row, method="adaptive"):
 	"""None for a method that estimates nothing."""
-	if method == "paper":
-		return None
 	return row["methods"].get(method, {}).get("report", {}).get("estimated_noise")
 
 

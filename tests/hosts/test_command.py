@@ -53,12 +53,37 @@ def test_denoise_reports_what_it_did(meshes, tmp_path):
     assert report["parameters"]["cos_threshold"] == 0.7
     assert "auto" not in (report["parameters"][name] for name in ("structure_ring", "vertex_iterations"))
     assert report["seconds"] > 0
+    # The paper's method makes no estimate.
+    assert "estimated_noise" not in report
     assert report["result"]["mean_angle"] < report["noisy"]["mean_angle"]
     noisy, result = ply.read(meshes / "noisy.ply"), ply.read(output)
     assert np.array_equal(noisy.faces, result.faces)
     assert report["moved_vertices"] == (noisy.positions != result.positions).any(axis=1).sum()
     again = json.loads(run("measure", meshes / "part.ply", output, "--json").stdout)
     assert again == report["result"]
+
+
+def test_the_adaptive_method_reports_its_estimate(meshes, tmp_path):
+    done = run("denoise", meshes / "noisy.ply", tmp_path / "out.ply", "--json")
+    assert done.returncode == 0
+    report = json.loads(done.stdout)
+    assert 0.07 < report["estimated_noise"] < 0.15
+    assert report["parameters"]["noise_level"] > 0
+    assert report["parameters"]["noise_type"] == "white"
+
+
+def test_what_is_far_from_the_reference_is_left_out(meshes, tmp_path):
+    def measured(*options):
+        done = run("measure", meshes / "part.ply", meshes / "noisy.ply", "--json", *options)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    everything = measured()
+    assert measured("--max-distance", 0) == everything
+    assert measured("--max-distance", 2 * everything["max_distance"]) == everything
+    near = measured("--max-distance", 0.5 * everything["max_distance"])
+    assert 0 < near["measured_faces"] < everything["measured_faces"]
+    assert near["max_distance"] <= 0.5 * everything["max_distance"]
 
 
 def test_denoise_says_it_in_words(meshes, tmp_path):
@@ -124,12 +149,19 @@ def test_info_counts_defects(meshes):
     part = info("part.ply")
     assert part["components"] == 1 and part["boundary_vertices"] == 0
     assert part["mean_edge_length"] > 0
-    assert part["estimated_noise"] < 0.02
+    assert part["white_noise"] < 0.02 and "unusable" not in part
     # Noise in a random direction has this share of itself along the normal.
-    assert 0.07 < info("noisy.ply")["estimated_noise"] < 0.15
-    assert "estimated_noise" not in info("points_only.ply")
+    assert 0.07 < info("noisy.ply")["white_noise"] < 0.15
+    assert "white_noise" not in info("points_only.ply")
     assert info("degenerate_face.ply")["degenerate_faces"] == 2
-    assert info("nan_coordinate.ply")["not_finite_vertices"] == 1
+    broken = info("nan_coordinate.ply")
+    assert broken["not_finite_vertices"] == 1 and "vertex 7" in broken["unusable"]
+    far = ply.read(meshes / "part.ply")
+    far.positions[5, 0] = 1e70
+    ply.write(meshes / "far.ply", far.positions, far.faces, dtype="<f8")
+    assert info("far.ply")["components"] == 1
+    assert "vertex 5 has a coordinate beyond 1e60" in info("far.ply")["unusable"]
+    assert "beyond 1e60" in run("info", meshes / "far.ply").stdout
     assert info("empty.ply")["faces"] == 0
     assert info("height_field.ply")["boundary_vertices"] > 300
     words = run("info", meshes / "part.ply")

@@ -178,7 +178,7 @@ void print_result(const TriangleMesh& mesh, const DenoiseResult& result, double 
 					  "no noise worth removing, positions left as they are" :
 					  "denoised")
 			  << " in " << seconds << " s\n";
-	if (result.estimated_noise > 0)
+	if (result.resolved.method == Method::Adaptive)
 		std::cout << "  estimated noise along the normal: " << result.estimated_noise
 				  << " mean edge lengths\n";
 	std::cout << "  parameters:";
@@ -235,16 +235,18 @@ int run_denoise(const DenoiseArguments& arguments)
 			{"status", status_name(result.status)},
 			{"seconds", seconds},
 			{"parameters", parameters},
-			{"estimated_noise", result.estimated_noise},
-			{"iterations_done", result.iterations_done},
-			{"degenerate_faces", result.degenerate_faces},
-			{"non_manifold_edges", result.non_manifold_edges},
-			{"folded_faces_before", result.folded_faces_before},
-			{"folded_faces_after", result.folded_faces_after},
-			{"moved_vertices", result.moved_vertices},
-			{"mean_displacement", result.mean_displacement},
-			{"max_displacement", result.max_displacement},
 		};
+		// The paper's method estimates nothing.
+		if (options.method == Method::Adaptive)
+			json["estimated_noise"] = result.estimated_noise;
+		json["iterations_done"] = result.iterations_done;
+		json["degenerate_faces"] = result.degenerate_faces;
+		json["non_manifold_edges"] = result.non_manifold_edges;
+		json["folded_faces_before"] = result.folded_faces_before;
+		json["folded_faces_after"] = result.folded_faces_after;
+		json["moved_vertices"] = result.moved_vertices;
+		json["mean_displacement"] = result.mean_displacement;
+		json["max_displacement"] = result.max_displacement;
 		if (reference) {
 			json["noisy"] = to_json(*before);
 			json["result"] = to_json(*after);
@@ -289,10 +291,11 @@ int run_measure(const MeasureArguments& arguments)
 	return 0;
 }
 
-// Along the normal, in mean edge lengths.
-double estimated_noise(const TriangleMesh& mesh)
+// Along the normal, in mean edge lengths, if it is independent from vertex to vertex. No more than
+// one of the things that denoising looks at: whether the noise goes together, whether outliers
+// make it and whether it proves to be detail comes on top.
+double white_noise(const TriangleMesh& mesh)
 {
-	validate(mesh);
 	Progress progress;
 	Execution execution(0, progress);
 	const Workspace workspace(mesh, execution);
@@ -312,8 +315,15 @@ int run_info(const InfoArguments& arguments)
 	json["unreferenced_vertices"] = found.unreferenced_vertices;
 	json["non_manifold_edges"] = found.non_manifold_edges;
 	json["not_finite_vertices"] = found.not_finite_vertices;
-	if (found.not_finite_vertices == 0 && found.degenerate_faces < mesh.face_count())
-		json["estimated_noise"] = estimated_noise(mesh);
+	// Defects are what this command is for: those that all others refuse are told with the rest.
+	try {
+		validate(mesh);
+		if (found.degenerate_faces < mesh.face_count())
+			json["white_noise"] = white_noise(mesh);
+	}
+	catch (const InvalidMesh& error) {
+		json["unusable"] = error.what();
+	}
 	if (arguments.json) {
 		std::cout << json.dump(2) << "\n";
 		return 0;
@@ -321,7 +331,8 @@ int run_info(const InfoArguments& arguments)
 	for (const auto& [name, value] : json.items()) {
 		std::string words = name;
 		std::replace(words.begin(), words.end(), '_', ' ');
-		std::cout << words << ": " << value << "\n";
+		std::cout << words << ": " << (value.is_string() ? value.get<std::string>() : value.dump())
+				  << "\n";
 	}
 	return 0;
 }
@@ -394,6 +405,10 @@ int run(int argc, char** argv)
 	InfoArguments info_arguments;
 	CLI::App* info_command =
 		app.add_subcommand("info", "Say what a mesh is like, and what is wrong with it");
+	info_command->footer(
+		"white_noise is the noise along the normals in mean edge lengths if that of neighbouring "
+		"vertices has nothing in common. denoise looks closer, and tells as estimated_noise what it "
+		"found.");
 	info_command->add_option("IN", info_arguments.input, mesh_file)->required();
 	info_command->add_flag("--json", info_arguments.json, "print it as JSON");
 

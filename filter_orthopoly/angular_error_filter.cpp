@@ -26,7 +26,8 @@ std::string AngularErrorFilter::info() const
 		   "log and the output values tell the mean and largest angle, the mean square angular error "
 		   "(MSAE, radians squared), the vertex error (area-weighted root mean square distance; in the "
 		   "mesh's unit and in mean edge lengths of the reference) and the number of faces folded over "
-		   "(more than 90 degrees off).<br><br>"
+		   "(more than 90 degrees off; those that the reference itself has folded are counted among them "
+		   "and by themselves).<br><br>"
 		   "Where both layers have the same faces, they pair by number; else each face pairs with the "
 		   "closest point of the reference.";
 }

@@ -179,6 +179,7 @@ void report_errors(FilterRun& run, const ErrorMeasures& errors, const std::strin
 			{prefix + "relative_vertex_error", errors.relative_vertex_error},
 			{prefix + "max_distance", errors.max_distance},
 			{prefix + "folded_faces", static_cast<int>(errors.folded_faces)},
+			{prefix + "folded_in_reference", static_cast<int>(errors.folded_in_reference)},
 			{prefix + "measured_faces", static_cast<int>(errors.measured_faces)},
 		});
 }
@@ -198,7 +199,10 @@ std::string describe_errors(const ErrorMeasures& errors)
 		   in_words(errors.msae_without_folded) + " without folded faces), vertex error " +
 		   in_words(errors.vertex_error) + " (eq. 13) = " + in_words(errors.relative_vertex_error) +
 		   " mean edge lengths, largest distance " + in_words(errors.max_distance) + ", " +
-		   count_of(errors.folded_faces, "face", "faces") + " folded over";
+		   count_of(errors.folded_faces, "face", "faces") + " folded over" +
+		   (errors.folded_in_reference > 0 ?
+				", " + std::to_string(errors.folded_in_reference) + " of them in the reference" :
+				"");
 }
 
 std::string in_words(double value)

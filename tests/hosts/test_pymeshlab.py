@@ -24,7 +24,7 @@ ERROR_OUTPUTS = {
     "mean_angle": float, "max_angle": float, "msae": float,
     "msae_without_folded": float, "vertex_error": float,
     "relative_vertex_error": float, "max_distance": float, "folded_faces": int,
-    "measured_faces": int,
+    "folded_in_reference": int, "measured_faces": int,
 }
 KINDS_OF_NOISE = next(
     p["choices"] for p in mlx.TABLE["filters"][0]["parameters"] if p["name"] == "noise_type")

@@ -63,10 +63,10 @@ void AngularErrorFilter::apply(FilterRun& run) const
 	options.max_distance = checked_value(max_distance_parameter(run.document), run.values);
 
 	const VcgArrays arrays = read_layer(current_layer(run));
-	const TriangleMesh reference = read_reference(run);
 	Progress progress = vcg_progress(run.callback);
-	report_or_stop(progress, 0, "measuring the distance to the reference");
-	const ErrorMeasures errors = measure(arrays.mesh, reference, options);
+	report_or_stop(progress, 0, "reading the reference");
+	const ReferenceMeasure reference(read_reference(run), options);
+	const ErrorMeasures errors = reference.measure(arrays.mesh, progress);
 	if (errors.measured_faces == 0)
 		throw InvalidParameter(
 			"none of the " + std::to_string(arrays.mesh.face_count()) +

@@ -4,6 +4,7 @@
 #include "denoise.h"
 #include "errors.h"
 #include "layers.h"
+#include "progress_part.h"
 
 #include <algorithm>
 #include <chrono>
@@ -37,16 +38,18 @@ struct Comparison {
 	ErrorMeasures before;
 };
 
-std::optional<Comparison> start_comparison(FilterRun& run, const VcgArrays& arrays)
+std::optional<Comparison>
+start_comparison(FilterRun& run, const VcgArrays& arrays, Progress& progress)
 {
 	if (!run.values.is_on(COMPARE))
 		return std::nullopt;
+	report_or_stop(progress, 0, "reading the reference");
 	Comparison comparison = {
 		checked_value(max_angle_parameter(), run.values),
 		ReferenceMeasure(read_reference(run)),
 		{},
 	};
-	comparison.before = comparison.reference.measure(arrays.mesh);
+	comparison.before = comparison.reference.measure(arrays.mesh, progress);
 	return comparison;
 }
 
@@ -220,19 +223,25 @@ void DenoiseFilter::apply(FilterRun& run) const
 	const VcgArrays arrays = read_current_layer(run);
 	Progress progress = vcg_progress(run.callback);
 	report_or_stop(progress, 0, "reading the mesh");
-	const std::optional<Comparison> comparison = start_comparison(run, arrays);
+	const double measuring = run.values.is_on(COMPARE) ? MEASURING_SHARE : 0;
+	Progress first_part = part_of(progress, 0, measuring);
+	const std::optional<Comparison> comparison = start_comparison(run, arrays, first_part);
 
+	Progress second_part = part_of(progress, measuring, 1 - measuring);
 	const auto start = std::chrono::steady_clock::now();
-	const DenoiseResult result = denoise(arrays.mesh, options, progress);
+	const DenoiseResult result = denoise(arrays.mesh, options, second_part);
 	const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-	report_or_stop(progress, 1, "done");
+	if (result.status == DenoiseResult::Status::Cancelled)
+		throw stopped_on_request();
 	std::optional<ErrorMeasures> after;
 	if (comparison) {
 		TriangleMesh denoised;
 		denoised.positions = result.positions;
 		denoised.faces = arrays.mesh.faces;
-		after = comparison->reference.measure(denoised);
+		Progress last_part = part_of(progress, 1 - measuring, 1);
+		after = comparison->reference.measure(denoised, last_part);
 	}
+	report_or_stop(progress, 1, "done");
 
 	// From here on nothing is refused. Painting first: it is what may run out of memory.
 	if (after)

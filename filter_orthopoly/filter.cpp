@@ -4,6 +4,8 @@
 #include "angular_error_filter.h"
 #include "denoise_filter.h"
 #include "errors.h"
+#include "execution.h"
+#include "layers.h"
 #include "noise_filter.h"
 
 #include <new>
@@ -26,6 +28,9 @@ void apply_filter(const Filter& filter, FilterRun& run)
 	}
 	catch (const Error&) {
 		throw;
+	}
+	catch (const Cancelled&) {
+		throw stopped_on_request();
 	}
 	catch (const std::bad_alloc&) {
 		throw Error(

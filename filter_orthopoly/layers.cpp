@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layers.h"
 
-#include "errors.h"
-
 #include <locale>
 #include <sstream>
 #include <vcg/complex/algorithms/update/bounding.h>
@@ -54,10 +52,15 @@ MeshModel& current_layer(FilterRun& run)
 	return *run.document.mm();
 }
 
+Error stopped_on_request()
+{
+	return Error("stopped on request; the mesh is unchanged");
+}
+
 void report_or_stop(Progress& progress, double fraction, const char* words)
 {
 	if (!progress.report(fraction, words))
-		throw Error("stopped on request; the mesh is unchanged");
+		throw stopped_on_request();
 }
 
 VcgArrays read_layer(const MeshModel& layer, VcgRegion region)

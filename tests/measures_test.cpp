@@ -3,6 +3,8 @@
 
 #include "defects.h"
 #include "errors.h"
+#include "execution.h"
+#include "progress_part.h"
 #include "shapes.h"
 #include "step_fixture.h"
 #include "test_support.h"
@@ -10,6 +12,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -257,16 +260,65 @@ TEST_CASE("The measures are the same on any number of threads", "[measures][para
 	}
 }
 
-TEST_CASE("One reference measures several meshes", "[measures]")
+TEST_CASE("one reference measures several meshes", "[measures]")
 {
 	const TriangleMesh clean = make_part(2000);
 	const ReferenceMeasure reference(clean);
 	for (const double sigma : {0.1, 0.3}) {
 		const TriangleMesh mesh = noisy(clean, sigma);
 		const ErrorMeasures expected = measure(mesh, clean);
-		const ErrorMeasures found = reference.measure(mesh);
+		Progress progress;
+		const ErrorMeasures found = reference.measure(mesh, progress);
 		CHECK(found.mean_angle == expected.mean_angle);
 		CHECK(found.relative_vertex_error == expected.relative_vertex_error);
 		CHECK(found.mean_angle > 5);
 	}
+}
+
+TEST_CASE("measuring tells how far it is and hears of a cancel", "[measures]")
+{
+	const TriangleMesh clean = make_part(2000);
+	const TriangleMesh mesh = noisy(clean, 0.2);
+	const ReferenceMeasure reference(clean);
+	std::vector<int> percents;
+	Progress whole([&](int percent, const std::string& words) {
+		CHECK_THAT(words, Contains("reference"));
+		percents.push_back(percent);
+		return true;
+	});
+	reference.measure(mesh, whole);
+	CHECK(percents.size() >= 3);
+	CHECK(std::is_sorted(percents.begin(), percents.end()));
+	CHECK(percents.back() >= 80);
+
+	const int last = GENERATE(0, 40, 80);
+	CAPTURE(last);
+	int calls_after = -1;
+	Progress stopped([&](int percent, const std::string&) {
+		if (percent >= last)
+			++calls_after;
+		return percent < last;
+	});
+	CHECK_THROWS_AS(reference.measure(mesh, stopped), Cancelled);
+	CHECK(calls_after == 0);
+}
+
+TEST_CASE("a part of the work reports within its share of the whole", "[measures]")
+{
+	std::vector<int> percents;
+	bool go_on = true;
+	Progress whole([&](int percent, const std::string&) {
+		percents.push_back(percent);
+		return go_on;
+	});
+	Progress part = part_of(whole, 0.25, 0.75);
+	CHECK(part.report(0, "begins"));
+	CHECK(part.report(0.5, "goes on"));
+	CHECK(part.report(1, "is over"));
+	CHECK(percents == std::vector<int> {25, 50, 75});
+	go_on = false;
+	Progress next = part_of(whole, 0.75, 1);
+	CHECK_FALSE(next.report(0, "begins"));
+	CHECK(whole.cancelled());
+	CHECK(next.cancelled());
 }

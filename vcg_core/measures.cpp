@@ -79,8 +79,12 @@ public:
 
 	ErrorMeasures run()
 	{
+		const char* const words = "measuring the distance to the reference";
+		execution_.begin_phase(0, 0.4, words);
 		measure_vertices();
+		execution_.begin_phase(0.4, 0.8, words);
 		measure_faces();
+		execution_.begin_phase(0.8, 1, words);
 		count_folded_in_reference();
 		return std::move(measures_);
 	}
@@ -201,7 +205,7 @@ ReferenceMeasure::ReferenceMeasure(TriangleMesh reference, const MeasureOptions&
 {
 }
 
-ErrorMeasures ReferenceMeasure::measure(const TriangleMesh& mesh) const
+ErrorMeasures ReferenceMeasure::measure(const TriangleMesh& mesh, Progress& progress) const
 {
 	validate(mesh);
 	if (std::all_of(mesh.faces.begin(), mesh.faces.end(), [&](const Face& face) {
@@ -210,8 +214,7 @@ ErrorMeasures ReferenceMeasure::measure(const TriangleMesh& mesh) const
 		throw InvalidMesh(
 			"none of the " + std::to_string(mesh.face_count()) +
 			" faces of the mesh has an area, so there is no angle to measure; check the coordinates");
-	Progress silent;
-	Execution execution(options_.threads, silent);
+	Execution execution(options_.threads, progress);
 	const Reference reference = {reference_, index_, options_};
 	ErrorMeasures measures = Measurement(mesh, reference, execution).run();
 	measures.relative_vertex_error = measures.vertex_error / mean_edge_length_;
@@ -221,7 +224,8 @@ ErrorMeasures ReferenceMeasure::measure(const TriangleMesh& mesh) const
 ErrorMeasures
 measure(const TriangleMesh& mesh, const TriangleMesh& reference, const MeasureOptions& options)
 {
-	return ReferenceMeasure(reference, options).measure(mesh);
+	Progress silent;
+	return ReferenceMeasure(reference, options).measure(mesh, silent);
 }
 
 } // namespace orthopoly

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "closest_point.h"
+#include "progress.h"
 #include "triangle_mesh.h"
 
 #include <vector>
@@ -56,8 +57,9 @@ public:
 	explicit ReferenceMeasure(TriangleMesh reference, const MeasureOptions& options = {});
 
 	/// Measures a mesh. Faces pair by index where both have the same faces, else by the closest
-	/// point. Throws InvalidMesh where the mesh has no face with an area.
-	ErrorMeasures measure(const TriangleMesh& mesh) const;
+	/// point. Throws InvalidMesh where the mesh has no face with an area, and Cancelled
+	/// (execution.h) where the progress asks to stop.
+	ErrorMeasures measure(const TriangleMesh& mesh, Progress& progress) const;
 
 private:
 	TriangleMesh reference_;
@@ -66,7 +68,8 @@ private:
 	double mean_edge_length_;
 };
 
-/// Measures one mesh against a reference, as `ReferenceMeasure` does.
+/// Measures one mesh against a reference, as `ReferenceMeasure` does, and tells nobody how far it
+/// is.
 ErrorMeasures measure(
 	const TriangleMesh& mesh, const TriangleMesh& reference, const MeasureOptions& options = {});
 

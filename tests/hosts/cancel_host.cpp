@@ -14,16 +14,30 @@
 namespace {
 
 int calls = 0;
-int allowed = 0;
+int calls_after = 0;
+int last_percent = 0;
+bool stopped = false;
 std::chrono::steady_clock::time_point refused;
 
-bool callback(const int, const char*)
+bool callback(const int percent, const char*)
 {
-	if (calls++ < allowed)
-		return true;
-	if (calls == allowed + 1)
+	++calls;
+	if (stopped)
+		++calls_after;
+	else if (percent >= last_percent) {
+		stopped = true;
 		refused = std::chrono::steady_clock::now();
-	return false;
+	}
+	return !stopped;
+}
+
+const char* menu_of(MeshFilterInterface::FilterClass classes)
+{
+	switch (classes) {
+	case MeshFilterInterface::Smoothing: return "Smoothing";
+	case MeshFilterInterface::Quality: return "Quality";
+	default: return "another";
+	}
 }
 
 std::vector<Point3m> positions(const CMeshO& mesh)
@@ -37,13 +51,14 @@ std::vector<Point3m> positions(const CMeshO& mesh)
 } // namespace
 
 /// Applies a filter of a plugin to an uneven sphere beside an even one, with a callback that
-/// answers false after so many calls. Prints what came of it, a word and its value a line.
+/// answers false from that percentage on; with a switch of the filter turned on, unless its name is
+/// empty. Prints what came of it, a word and its value a line.
 extern "C" __attribute__((visibility("default"))) int
-apply_and_cancel(const char* plugin_path, const char* filter, int allowed_calls)
+apply_and_cancel(const char* plugin_path, const char* filter, int percent, const char* on)
 {
 	int argc = 0;
 	QApplication application(argc, nullptr);
-	allowed = allowed_calls;
+	last_percent = percent;
 	QPluginLoader loader(plugin_path);
 	auto* plugin = qobject_cast<MeshFilterInterface*>(loader.instance());
 	if (plugin == nullptr) {
@@ -67,16 +82,20 @@ apply_and_cancel(const char* plugin_path, const char* filter, int allowed_calls)
 	QAction* action = plugin->AC(QString(filter));
 	RichParameterList parameters;
 	plugin->initParameterSet(action, document, parameters);
+	if (*on != '\0')
+		parameters.setValue(on, BoolValue(true));
 	const std::vector<Point3m> before = positions(document.mm()->cm);
 	const bool applied = plugin->applyFilter(action, document, parameters, &callback);
 	const auto waited = std::chrono::steady_clock::now() - refused;
 
 	const bool painted = document.mm()->hasDataMask(MeshModel::MM_FACECOLOR) ||
 						 document.mm()->hasDataMask(MeshModel::MM_FACEQUALITY);
+	std::printf("menu %s\n", menu_of(plugin->getClass(action)));
 	std::printf("calls %d\n", calls);
+	std::printf("calls_after %d\n", calls_after);
 	std::printf("applied %d\n", applied ? 1 : 0);
 	std::printf("changed %d\n", before != positions(document.mm()->cm) || painted ? 1 : 0);
-	if (calls > allowed)
+	if (stopped)
 		std::printf(
 			"milliseconds %.3f\n", std::chrono::duration<double, std::milli>(waited).count());
 	std::printf("message %s\n", qUtf8Printable(plugin->errorMsg()));

@@ -4,10 +4,10 @@
 import json
 import os
 import pty
+import re
 import select
 import signal
 import subprocess
-import time
 
 import hosts
 import numpy as np
@@ -37,6 +37,31 @@ def meshes(tmp_path_factory):
         noisy = folder / file.replace("part", "noisy")
         assert run("noise", folder / file, noisy, "--sigma", 0.2).returncode == 0
     return folder
+
+
+def in_terminal(arguments, until=None):
+    """Runs the command with a terminal for its error stream, and sends Ctrl-C once `until` is seen
+    there. Returns the exit code and both streams."""
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen(
+        [str(hosts.COMMAND), *map(str, arguments)], stdout=subprocess.PIPE, stderr=theirs)
+    os.close(theirs)
+    seen = b""
+    while select.select([ours], [], [], hosts.TIMEOUT)[0]:
+        try:
+            piece = os.read(ours, 4096)
+        except OSError:
+            break
+        if not piece:
+            break
+        seen += piece
+        if until and until in seen:
+            process.send_signal(signal.SIGINT)
+            until = None
+    os.close(ours)
+    out = process.communicate(timeout=hosts.TIMEOUT)[0]
+    assert until is None, f"{until} was never seen in {seen}"
+    return process.returncode, out, seen
 
 
 def test_denoise_reports_what_it_did(meshes, tmp_path):
@@ -197,6 +222,9 @@ def test_info_counts_defects(meshes):
      "impulsive_share is 2"),
     (["measure", "{folder}/points_only.ply", "{noisy}"], "reference"),
     (["measure", "{noisy}", "{folder}/points_only.ply"], "no"),
+    (["measure", "{noisy}", "{noisy}", "--max-distance", "-1"], "max_distance is -1"),
+    (["measure", "{noisy}", "{noisy}", "--max-distance", "nan"], "max_distance is 'nan'"),
+    (["measure", "{noisy}", "{folder}/height_field.ply", "--max-distance", "1e-300"], "--max-distance"),
     (["info", "{folder}"], "must end in"),
 ])
 def test_an_error_is_one_line(meshes, tmp_path, arguments, words):
@@ -209,37 +237,30 @@ def test_an_error_is_one_line(meshes, tmp_path, arguments, words):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_control_c_writes_nothing(meshes, tmp_path):
-    output = tmp_path / "out.ply"
-    process = subprocess.Popen(
-        [hosts.COMMAND, "denoise", meshes / "large" / "noisy.ply", output, "--method", "paper"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )
-    time.sleep(2)
-    assert process.poll() is None
-    process.send_signal(signal.SIGINT)
-    out, error = process.communicate(timeout=5)
-    assert process.returncode == 130
-    assert out == "" and error == "orthopoly: cancelled, nothing was written\n"
+@pytest.mark.parametrize("words", ["iteration 1 of", "measuring"])
+def test_control_c_writes_nothing(meshes, tmp_path, words):
+    code, out, seen = in_terminal(
+        ["denoise", meshes / "large" / "noisy.ply", tmp_path / "out.ply", "--method", "paper",
+         "--reference", meshes / "large" / "part.ply"],
+        until=words.encode())
+    assert code == 130
+    assert out == b"" and seen.endswith(b"orthopoly: cancelled, nothing was written\r\n")
     assert list(tmp_path.iterdir()) == []
 
 
+def test_control_c_stops_measuring(meshes):
+    large = meshes / "large"
+    code, out, seen = in_terminal(
+        ["measure", large / "part.ply", large / "noisy.ply"], until=b"measuring")
+    assert code == 130 and out == b"" and b"cancelled" in seen
+
+
 def test_a_terminal_sees_a_bar(meshes, tmp_path):
-    ours, theirs = pty.openpty()
-    process = subprocess.Popen(
-        [hosts.COMMAND, "denoise", meshes / "noisy.ply", tmp_path / "out.ply", "--method", "paper"],
-        stdout=subprocess.DEVNULL, stderr=theirs,
-    )
-    os.close(theirs)
-    seen = b""
-    while select.select([ours], [], [], 10)[0]:
-        try:
-            piece = os.read(ours, 4096)
-        except OSError:
-            break
-        if not piece:
-            break
-        seen += piece
-    os.close(ours)
-    assert process.wait(timeout=10) == 0
-    assert b"[" in seen and b"%" in seen and b"iteration 1 of 5" in seen
+    code, _, seen = in_terminal(
+        ["denoise", meshes / "noisy.ply", tmp_path / "out.ply", "--method", "paper",
+         "--reference", meshes / "part.ply"])
+    assert code == 0
+    assert b"[" in seen and b"%" in seen
+    assert b"iteration 1 of 5" in seen and b"measuring the distance to the reference" in seen
+    percents = [int(word) for word in re.findall(rb"(\d+) %", seen)]
+    assert percents == sorted(percents) and percents[-1] >= 95

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "denoise.h"
 #include "errors.h"
+#include "execution.h"
 #include "inspection.h"
 #include "measures.h"
 #include "mesh_io.h"
 #include "noise.h"
 #include "noise_level.h"
 #include "parameters.h"
+#include "progress_part.h"
 #include "terminal.h"
 #include "workspace.h"
 
@@ -15,6 +17,7 @@
 #include <chrono>
 #include <exception>
 #include <iostream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
@@ -54,6 +57,7 @@ struct NoiseArguments {
 struct MeasureArguments {
 	std::string reference;
 	std::string result;
+	std::string max_distance;
 	bool json = false;
 };
 
@@ -200,32 +204,38 @@ int run_denoise(const DenoiseArguments& arguments)
 	validate(options);
 	check_savable(arguments.output);
 	const TriangleMesh mesh = load_mesh(arguments.input);
-	std::optional<TriangleMesh> reference;
-	std::optional<ErrorMeasures> before;
-	if (!arguments.reference.empty()) {
-		reference = load_mesh(arguments.reference);
-		// Now rather than at the end: a reference that will not do is refused before the work.
-		before = measure(mesh, *reference);
-	}
+	std::optional<ReferenceMeasure> reference;
+	if (!arguments.reference.empty())
+		reference.emplace(load_mesh(arguments.reference));
 
 	catch_interrupt();
 	Progress progress = terminal_progress();
+	const double measuring = reference ? MEASURING_SHARE : 0;
+	std::optional<ErrorMeasures> before;
+	if (reference) {
+		// Now rather than at the end: a reference that will not do is refused before the work.
+		Progress first_part = part_of(progress, 0, measuring);
+		before = reference->measure(mesh, first_part);
+	}
+	Progress second_part = part_of(progress, measuring, 1 - measuring);
 	const auto start = std::chrono::steady_clock::now();
-	const DenoiseResult result = denoise(mesh, options, progress);
+	const DenoiseResult result = denoise(mesh, options, second_part);
 	const double seconds =
 		std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-	clear_progress();
-	if (result.status == DenoiseResult::Status::Cancelled || interrupted()) {
-		std::cerr << "orthopoly: cancelled, nothing was written\n";
-		return EXIT_INTERRUPTED;
-	}
+	if (result.status == DenoiseResult::Status::Cancelled)
+		throw Cancelled();
 	TriangleMesh denoised = mesh;
 	denoised.positions = result.positions;
+	std::optional<ErrorMeasures> after;
+	if (reference) {
+		Progress last_part = part_of(progress, 1 - measuring, 1);
+		after = reference->measure(denoised, last_part);
+	}
+	clear_progress();
+	if (interrupted())
+		throw Cancelled();
 	save_mesh(arguments.output, denoised);
 
-	std::optional<ErrorMeasures> after;
-	if (reference)
-		after = measure(denoised, *reference);
 	if (arguments.json) {
 		Json parameters;
 		for (const Parameter<DenoiseOptions>& parameter : denoise_parameters())
@@ -276,11 +286,30 @@ int run_noise(const NoiseArguments& arguments)
 	return 0;
 }
 
+ParameterInfo max_distance()
+{
+	ParameterInfo parameter;
+	parameter.name = "max_distance";
+	parameter.maximum = std::numeric_limits<double>::max();
+	return parameter;
+}
+
 int run_measure(const MeasureArguments& arguments)
 {
-	const TriangleMesh reference = load_mesh(arguments.reference);
+	MeasureOptions options;
+	if (!arguments.max_distance.empty())
+		options.max_distance = max_distance().parse(arguments.max_distance);
+	const ReferenceMeasure reference(load_mesh(arguments.reference), options);
 	const TriangleMesh result = load_mesh(arguments.result);
-	const ErrorMeasures measures = measure(result, reference);
+	catch_interrupt();
+	Progress progress = terminal_progress();
+	const ErrorMeasures measures = reference.measure(result, progress);
+	clear_progress();
+	if (measures.measured_faces == 0)
+		throw InvalidParameter(
+			"none of the " + std::to_string(result.face_count()) +
+			" faces has an area and lies within --max-distance of the reference; give more (0: no "
+			"limit)");
 	if (arguments.json) {
 		std::cout << to_json(measures).dump(2) << "\n";
 		return 0;
@@ -400,6 +429,10 @@ int run(int argc, char** argv)
 	CLI::App* measure_command = app.add_subcommand("measure", "Say how far a mesh is from another");
 	measure_command->add_option("REFERENCE", measure_arguments.reference, mesh_file)->required();
 	measure_command->add_option("RESULT", measure_arguments.result, mesh_file)->required();
+	measure_command->add_option(
+		"--max-distance",
+		measure_arguments.max_distance,
+		"leave out what is farther than this from the reference, in its unit (0, the default: nothing)");
 	measure_command->add_flag("--json", measure_arguments.json, "print the measures as JSON");
 
 	InfoArguments info_arguments;
@@ -438,6 +471,10 @@ int main(int argc, char** argv)
 {
 	try {
 		return orthopoly::run(argc, argv);
+	}
+	catch (const orthopoly::Cancelled&) {
+		orthopoly::report_error("cancelled, nothing was written");
+		return orthopoly::EXIT_INTERRUPTED;
 	}
 	catch (const std::bad_alloc&) {
 		return orthopoly::report_error("there is not enough memory");

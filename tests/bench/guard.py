@@ -17,6 +17,7 @@ import hashlib
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -50,9 +51,10 @@ def vcglib():
 	commands = json.loads((tools.BUILD / "compile_commands.json").read_text(encoding="utf-8"))
 	for entry in commands:
 		if entry["file"].endswith("vcg_core/mesh_io.cpp") and "orthopoly_vcg.dir" in entry["command"]:
-			match = re.search(r"-isystem (\S*vcglib\S*)", entry["command"])
-			if match:
-				return match.group(1)
+			words = shlex.split(entry["command"])
+			for option, folder in zip(words, words[1:]):
+				if option == "-isystem" and "vcglib" in folder:
+					return folder
 	raise tools.BenchError(f"{tools.BUILD} does not say which vcglib it was built with")
 
 

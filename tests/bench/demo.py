@@ -17,6 +17,7 @@ import tempfile
 
 import pymeshlab
 import render
+import tools
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "hosts"))
 import hosts  # noqa: E402
@@ -81,8 +82,7 @@ def main():
 	legacy = (hosts.BUILD / "plugins" / "meshlab-2020.09").is_dir() and shutil.which("meshlabserver")
 	apply = in_meshlabserver if legacy and os.environ.get("DISPLAY") else in_pymeshlab
 	if apply is in_pymeshlab:
-		plugins = (hosts.BUILD / "plugins").glob("pymeshlab-*/libfilter_orthopoly.so")
-		pymeshlab.load_plugin(str(sorted(plugins)[-1]))
+		pymeshlab.load_plugin(str(tools.newest_plugin()))
 	with tempfile.TemporaryDirectory() as folder:
 		apply(pathlib.Path(folder), mlx.ERROR, {"max_angle": ERROR_RANGE}, OUT / "noisy.ply")
 	with tempfile.TemporaryDirectory() as folder:

@@ -117,8 +117,7 @@ def time_meshlab_filter(filter_name, path, repeats, budget, reference):
 	os.dup2(1, 2)
 	given = {"compare_with_reference": True, "reference": 1} if reference else {}
 	if filter_name.startswith("apply_coord_orthogonal"):
-		plugins = sorted((tools.BUILD / "plugins").glob("pymeshlab-*/libfilter_orthopoly.so"))
-		pymeshlab.load_plugin(str(plugins[-1]))
+		pymeshlab.load_plugin(str(tools.newest_plugin()))
 	meshes = pymeshlab.MeshSet()
 	meshes.load_new_mesh(path)
 	vertices, faces = meshes.current_mesh().vertex_matrix(), meshes.current_mesh().face_matrix()
@@ -158,7 +157,7 @@ class Contender:
 
 
 CONTENDERS = {
-	"adaptive": Contender("orthopoly, auto", run_orthopoly, "adaptive", True),
+	"adaptive": Contender("orthopoly, adaptive", run_orthopoly, "adaptive", True),
 	"paper": Contender("orthopoly, paper's method", run_orthopoly, "paper", True),
 	"meshdenoiser": Contender("MeshDenoiser", run_mesh_denoiser, "", True, "meshdenoiser"),
 	"taubin": Contender(

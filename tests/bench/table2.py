@@ -12,15 +12,13 @@ what the noisy input measures and what the paper prints. Exit code 1 where a med
 
 import argparse
 import json
-import os
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass, field
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+import tools
 
 
 @dataclass
@@ -56,13 +54,6 @@ def table2():
 	]
 
 
-def orthopoly(program, *arguments):
-	done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
-	if done.returncode != 0:
-		sys.exit(done.stderr.strip() or f"{program} ended with code {done.returncode}")
-	return done.stdout
-
-
 def in_table_units(model, measures):
 	return {
 		"MSAE": 100 * measures["msae"],
@@ -77,11 +68,11 @@ def run_model(program, model, arguments, folder):
 	clean = arguments.folder / f"{model.name}.ply"
 	for seed in range(1, arguments.seeds + 1):
 		noisy, result = folder / "noisy.ply", folder / "result.ply"
-		orthopoly(
-			program, "noise", clean, noisy, "--kind", "random", "--sigma", model.sigma,
+		tools.call(
+			program, "noise", clean, noisy, "--direction", "random", "--sigma", model.sigma,
 			"--seed", seed)
 		settings = [word for s in model.settings() + arguments.set for word in ("--set", s)]
-		report = json.loads(orthopoly(
+		report = json.loads(tools.call(
 			program, "denoise", noisy, result, "--method", "paper", "--json",
 			"--reference", clean, *settings))
 		model.runs.append({
@@ -97,11 +88,7 @@ def median(model, which, measure):
 
 
 def spread(model, which, measure, digits):
-	values = [run[which][measure] for run in model.runs]
-	middle = f"{statistics.median(values):.{digits}f}"
-	if len(values) == 1:
-		return middle
-	return f"{middle} ({min(values):.{digits}f}-{max(values):.{digits}f})"
+	return tools.spread([run[which][measure] for run in model.runs], digits)
 
 
 def print_table(models):
@@ -143,9 +130,7 @@ def arguments_of_the_command_line():
 		"--set", action="append", default=[], metavar="NAME=VALUE",
 		help="another parameter for all four models")
 	parser.add_argument(
-		"--build", type=pathlib.Path,
-		default=pathlib.Path(os.environ.get("ORTHOPOLY_BUILD_DIR", ROOT / "build")),
-		help="build folder (default: build/)")
+		"--build", type=pathlib.Path, default=tools.BUILD, help="build folder (default: build/)")
 	parser.add_argument("--json", type=pathlib.Path, help="write every run to this file too")
 	arguments = parser.parse_args()
 	if arguments.folder is None:
@@ -161,14 +146,12 @@ def arguments_of_the_command_line():
 
 def main():
 	arguments = arguments_of_the_command_line()
-	program = arguments.build / "bin" / "orthopoly"
-	if not program.is_file():
-		sys.exit(f"{program} is not there: build it first (./run build)")
+	program = tools.program("orthopoly", arguments.build)
 	models = table2()
 	with tempfile.TemporaryDirectory() as folder:
 		for model in models:
 			clean = arguments.folder / f"{model.name}.ply"
-			model.vertices = json.loads(orthopoly(program, "info", clean, "--json"))["vertices"]
+			model.vertices = json.loads(tools.call(program, "info", clean, "--json"))["vertices"]
 			run_model(program, model, arguments, pathlib.Path(folder))
 	print_table(models)
 	if arguments.json:
@@ -179,4 +162,7 @@ def main():
 
 
 if __name__ == "__main__":
-	sys.exit(main())
+	try:
+		sys.exit(main())
+	except (tools.BenchError, OSError) as error:
+		sys.exit(f"table2: {error}")

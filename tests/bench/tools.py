@@ -44,6 +44,12 @@ def orthopoly(*arguments):
 	return call(program("orthopoly"), *arguments)
 
 
+def newest_plugin():
+	"""That of the newest pymeshlab which one was built for: 2025.10 comes after 2025.7."""
+	plugins = (BUILD / "plugins").glob("pymeshlab-*/libfilter_orthopoly.so")
+	return max(plugins, key=lambda path: [int(word) for word in re.findall(r"\d+", path.parent.name)])
+
+
 def measure(reference, result):
 	return json.loads(orthopoly("measure", "--json", reference, result))
 

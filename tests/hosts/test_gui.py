@@ -102,10 +102,17 @@ def pure_blue(picture):
     return ((view[..., 2] > 200) & (view[..., 0] < 40) & (view[..., 1] < 100)).mean()
 
 
+def picture_that(window, name, condition, what):
+    """A picture that fulfils condition(picture): the window draws when it gets round to it."""
+    return window.wait(
+        lambda: [picture for picture in [window.screenshot(name)] if condition(picture)],
+        f"waited for {what}", seconds=30)[0]
+
+
 def test_error_is_drawn_and_denoising_previewed_and_applied(window):
     layout = LAYOUTS[window.version]
-    start = window.screenshot("1-noisy")
-    assert saturated(start) < 0.01
+    picture_that(
+        window, "1-noisy", lambda picture: saturated(picture) < 0.01, "the reference to be hidden")
 
     window.open_menu(QUALITY, ERROR_ENTRY)
     window.screenshot("2-menu-quality")
@@ -115,8 +122,9 @@ def test_error_is_drawn_and_denoising_previewed_and_applied(window):
     in_dialog(window, dialog, layout.apply)
     window.wait_for_log("Applied filter Angular Error from Reference Mesh" if window.version == "2020.09"
                         else "Applied filter")
-    coloured = window.screenshot("4-error-of-the-noisy-mesh")
-    assert saturated(coloured) > 0.05
+    coloured = picture_that(
+        window, "4-error-of-the-noisy-mesh", lambda picture: saturated(picture) > 0.05,
+        "the colours of the error")
     assert "faces measured, paired by number" in window.log()
 
     window.open_menu(SMOOTHING + AFTER_THE_FIRST, DENOISE_ENTRY)
@@ -128,16 +136,16 @@ def test_error_is_drawn_and_denoising_previewed_and_applied(window):
 
     in_dialog(window, dialog, layout.preview)
     window.wait_for_log("after: mean angle")
-    previewed = window.screenshot("7-preview")
-    assert pure_blue(previewed) > pure_blue(coloured) + 0.05
+    bluer = lambda picture: pure_blue(picture) > pure_blue(coloured) + 0.05  # noqa: E731
+    picture_that(window, "7-preview", bluer, "the preview")
 
     in_dialog(window, dialog, layout.preview)
-    undone = window.screenshot("8-preview-off")
-    assert abs(pure_blue(undone) - pure_blue(coloured)) < 0.03
+    picture_that(
+        window, "8-preview-off",
+        lambda picture: abs(pure_blue(picture) - pure_blue(coloured)) < 0.03, "the preview to go")
 
     in_dialog(window, dialog, layout.apply)
-    window.wait(lambda: pure_blue(window.screenshot("9-applied")) > pure_blue(coloured) + 0.05,
-                "waited for the denoised mesh", seconds=30)
+    picture_that(window, "9-applied", bluer, "the denoised mesh")
     assert window.process.poll() is None
 
 

@@ -3,6 +3,13 @@
 
 set(MESHLAB_PLUGIN_MODULE_DIR "${CMAKE_CURRENT_LIST_DIR}")
 
+# What follows is of the linker and the library format there.
+if(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
+	message(FATAL_ERROR
+		"The plugin can be built for MeshLab on Linux only. Without MESHLAB_SOURCE_DIR, "
+		"-DVCGLIB_DIR=<vcglib tree> builds the library and the command")
+endif()
+
 # An empty library with the name of MeshLab's own, to link against. The plugin has to name it as
 # needed (pymeshlab loads plugins with local symbols), while the host brings the real one.
 function(add_meshlab_common_stub)

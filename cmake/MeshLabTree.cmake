@@ -3,12 +3,13 @@
 
 # find_meshlab_trees(DIRECTORIES)
 #
+# Takes relative paths as from the folder of the project.
 # Sets in the caller MESHLAB_TREES, the versions found from oldest to newest, and for each version
 # MESHLAB_<version>_SOURCE (the folder of <common/...>), _VCGLIB and _INTERFACE (old or new).
 function(find_meshlab_trees DIRECTORIES)
 	set(versions "")
 	foreach(tree IN LISTS DIRECTORIES)
-		get_filename_component(tree "${tree}" ABSOLUTE BASE_DIR "${CMAKE_BINARY_DIR}")
+		get_filename_component(tree "${tree}" ABSOLUTE BASE_DIR "${PROJECT_SOURCE_DIR}")
 		if(NOT EXISTS "${tree}/ML_VERSION")
 			message(FATAL_ERROR "${tree} is not a MeshLab source tree: ML_VERSION is not in it")
 		endif()

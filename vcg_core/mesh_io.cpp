@@ -70,15 +70,15 @@ void check_written(const std::string& path, std::size_t smallest_size)
 void save_ply(const std::string& path, const TriangleMesh& mesh)
 {
 	using Exporter = vcg::tri::io::ExporterPLY<FileMesh>;
-	constexpr int mask = Mask::IOM_VERTCOORD | Mask::IOM_FACEINDEX;
-	constexpr std::size_t vertex_size = 3 * sizeof(double);
-	constexpr std::size_t face_size = 1 + 3 * sizeof(std::int32_t);
+	constexpr int MASK = Mask::IOM_VERTCOORD | Mask::IOM_FACEINDEX;
+	constexpr std::size_t VERTEX_SIZE = 3 * sizeof(double);
+	constexpr std::size_t FACE_SIZE = 1 + 3 * sizeof(std::int32_t);
 	FileMesh file;
 	fill(file, mesh);
-	const int error = Exporter::Save(file, path.c_str(), mask, true);
+	const int error = Exporter::Save(file, path.c_str(), MASK, true);
 	if (error != 0)
 		throw FileError(Exporter::ErrorMsg(error));
-	check_written(path, mesh.positions.size() * vertex_size + mesh.faces.size() * face_size);
+	check_written(path, mesh.positions.size() * VERTEX_SIZE + mesh.faces.size() * FACE_SIZE);
 }
 
 void save_stl(const std::string& path, const TriangleMesh& mesh)

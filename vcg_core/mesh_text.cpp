@@ -180,15 +180,6 @@ TriangleMesh parse_binary_stl(std::string_view content)
 	return mesh;
 }
 
-void append_number(double value, std::string& text)
-{
-	// The shortest text that reads back as the same number has at most 24 characters.
-	std::array<char, 32> buffer {};
-	const std::to_chars_result result =
-		std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-	text.append(buffer.data(), result.ptr);
-}
-
 void append_point(const Point& point, std::string& text)
 {
 	append_number(point.x(), text);

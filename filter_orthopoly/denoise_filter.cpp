@@ -118,7 +118,7 @@ void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseR
 	run.log(
 		count_of(result.iterations_done, "iteration", "iterations") + ", " +
 		count_of(result.moved_vertices, "vertex", "vertices") + " moved, by " +
-		in_words(result.mean_displacement) + " (root mean square over all vertices), " +
+		in_words(result.mean_displacement) + " (mean of all vertices), " +
 		in_words(result.max_displacement) + " at most");
 	run.log(
 		"faces folded over: " + std::to_string(result.folded_faces_before) + " before, " +

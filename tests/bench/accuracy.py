@@ -357,7 +357,7 @@ def without_truth_table(rows, methods):
 				tools.number(report.get("mean_displacement"), 6)])
 	return tools.table(
 		["group", "case", "method", "seconds", "estimated noise", "folded before", "folded after",
-		 "RMS displacement"], out)
+		 "mean displacement"], out)
 
 
 def published_table(rows, methods, published):

@@ -3,6 +3,7 @@
 
 #include "denoise.h"
 #include "errors.h"
+#include "execution.h"
 #include "layers.h"
 #include "progress_part.h"
 
@@ -232,7 +233,7 @@ void DenoiseFilter::apply(FilterRun& run) const
 	const DenoiseResult result = denoise(arrays.mesh, options, second_part);
 	const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
 	if (result.status == DenoiseResult::Status::Cancelled)
-		throw stopped_on_request();
+		throw Cancelled();
 	std::optional<ErrorMeasures> after;
 	if (comparison) {
 		TriangleMesh denoised;

@@ -5,7 +5,6 @@
 #include "denoise_filter.h"
 #include "errors.h"
 #include "execution.h"
-#include "layers.h"
 #include "noise_filter.h"
 
 #include <new>
@@ -30,7 +29,7 @@ void apply_filter(const Filter& filter, FilterRun& run)
 		throw;
 	}
 	catch (const Cancelled&) {
-		throw stopped_on_request();
+		throw Error("stopped on request; the mesh is unchanged");
 	}
 	catch (const std::bad_alloc&) {
 		throw Error(

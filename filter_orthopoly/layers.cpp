@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "layers.h"
 
+#include "errors.h"
+#include "execution.h"
+
 #include <locale>
 #include <sstream>
 #include <vcg/complex/algorithms/update/bounding.h>
@@ -52,15 +55,10 @@ MeshModel& current_layer(FilterRun& run)
 	return *run.document.mm();
 }
 
-Error stopped_on_request()
-{
-	return Error("stopped on request; the mesh is unchanged");
-}
-
 void report_or_stop(Progress& progress, double fraction, const char* words)
 {
 	if (!progress.report(fraction, words))
-		throw stopped_on_request();
+		throw Cancelled();
 }
 
 VcgArrays read_layer(const MeshModel& layer, VcgRegion region)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "errors.h"
 #include "filter.h"
 #include "measures.h"
 #include "vcg_adapter.h"
@@ -13,10 +12,7 @@ namespace orthopoly {
 /// The current layer of the run's document. Throws InvalidMesh where there is none.
 MeshModel& current_layer(FilterRun& run);
 
-/// What a filter throws where the user wants the work to stop.
-Error stopped_on_request();
-
-/// Reports progress. Throws Error where the user wants the work to stop; call it only before
+/// Reports progress. Throws Cancelled where the user wants the work to stop; call it only before
 /// anything is written.
 void report_or_stop(Progress& progress, double fraction, const char* words);
 

@@ -59,7 +59,7 @@ Point place_on(const TriangleMesh& mesh)
 		std::find_if(mesh.faces.begin(), mesh.faces.end(), [&](const Face& candidate) {
 			return !is_degenerate(mesh.positions, candidate);
 		});
-	return mesh.positions[static_cast<std::size_t>(face->front())];
+	return mesh.positions[at(face->front())];
 }
 
 Index count_degenerate_faces(const TriangleMesh& mesh, Execution& execution)

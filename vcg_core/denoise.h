@@ -47,11 +47,13 @@ struct DenoiseOptions {
 	std::optional<int> vertex_iterations;
 	/// Leave vertices on open boundaries where they are.
 	bool keep_boundary = false;
+	/// Most rings that either of the next two may have.
+	static constexpr int MAX_RINGS = 10;
 	/// Paper: rings r of the local structure S_i, in face rings.
 	int guide_ring = 1;
 	/// Rings R of the non-local structure, in face rings (automatic in the paper's method: one more
-	/// than the guide ring); adaptive: the largest tried for normals, those of heights being wider
-	/// in the same measure as by themselves.
+	/// than the guide ring, where that is allowed); adaptive: the largest tried for normals, those
+	/// of heights being wider in the same measure as by themselves.
 	std::optional<int> structure_ring;
 	/// Paper: sigma_theta of eq. 3, degrees.
 	double sigma_theta = 30.0;

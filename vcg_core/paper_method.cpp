@@ -31,11 +31,9 @@ constexpr double LARGEST_COS_THRESHOLD = 1.0 - 1e-6;
 
 // The paper leaves R open; one ring more than the structures it looks for, as far as the parameter
 // goes.
-constexpr int LARGEST_STRUCTURE_RING = 10;
-
 int default_structure_ring(const DenoiseOptions& options)
 {
-	return std::min(LARGEST_STRUCTURE_RING, options.guide_ring + 1);
+	return std::min(DenoiseOptions::MAX_RINGS, options.guide_ring + 1);
 }
 
 DenoiseOptions resolve(DenoiseOptions options)

@@ -219,8 +219,9 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 			boolean(
 				"keep_boundary",
 				"Keep boundary vertices",
-				"Vertices on open edges, which belong to one face only, stay exactly where they are. Use it where the mesh must "
-				"still fit its neighbour; the noise on the boundary then stays too.")),
+				"Vertices on open edges, which belong to one face only, stay exactly where they are. "
+				"Use it where the mesh must still fit its neighbour; the noise on the boundary then "
+				"stays too.")),
 		bind(
 			&Options::vertex_iterations,
 			advanced(within(
@@ -238,7 +239,7 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 			&Options::structure_ring,
 			advanced(within(
 				1,
-				10,
+				Options::MAX_RINGS,
 				named(
 					Type::Integer,
 					"structure_ring",
@@ -276,7 +277,7 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 			&Options::guide_ring,
 			advanced(within(
 				1,
-				10,
+				Options::MAX_RINGS,
 				named(
 					Type::Integer,
 					"guide_ring",

@@ -20,7 +20,7 @@ struct Workspace {
 	Execution& execution;
 	/// Faces around every vertex, #V lists.
 	IndexLists vertex_faces;
-	/// Boundary flags, #V, and the number of non-manifold edges.
+	/// Flags of boundary and irregular vertices, #V each, and the number of non-manifold edges.
 	EdgeDefects edges;
 	/// Mean edge length of the mesh as given.
 	double mean_edge_length;

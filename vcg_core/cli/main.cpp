@@ -245,18 +245,18 @@ int run_denoise(const DenoiseArguments& arguments)
 			{"status", status_name(result.status)},
 			{"seconds", seconds},
 			{"parameters", parameters},
+			{"iterations_done", result.iterations_done},
+			{"degenerate_faces", result.degenerate_faces},
+			{"non_manifold_edges", result.non_manifold_edges},
+			{"folded_faces_before", result.folded_faces_before},
+			{"folded_faces_after", result.folded_faces_after},
+			{"moved_vertices", result.moved_vertices},
+			{"mean_displacement", result.mean_displacement},
+			{"max_displacement", result.max_displacement},
 		};
 		// The paper's method estimates nothing.
 		if (options.method == Method::Adaptive)
 			json["estimated_noise"] = result.estimated_noise;
-		json["iterations_done"] = result.iterations_done;
-		json["degenerate_faces"] = result.degenerate_faces;
-		json["non_manifold_edges"] = result.non_manifold_edges;
-		json["folded_faces_before"] = result.folded_faces_before;
-		json["folded_faces_after"] = result.folded_faces_after;
-		json["moved_vertices"] = result.moved_vertices;
-		json["mean_displacement"] = result.mean_displacement;
-		json["max_displacement"] = result.max_displacement;
 		if (reference) {
 			json["noisy"] = to_json(*before);
 			json["result"] = to_json(*after);

@@ -210,3 +210,13 @@ TEST_CASE("rings stop at the end of a component", "[adjacency]")
 	rings.collect(0, 50);
 	CHECK(static_cast<Index>(rings.faces().size()) == mesh.face_count() - 1);
 }
+
+TEST_CASE("components are numbered by their first faces", "[adjacency]")
+{
+	// Two triangles that share a vertex, one by itself, and a vertex without a face.
+	const std::vector<Face> faces = {{4, 5, 6}, {0, 1, 2}, {2, 3, 8}};
+	const Components components = number_components(faces, vertex_faces(9, faces));
+	CHECK(components.count == 2);
+	CHECK(components.numbers == std::vector<Index> {1, 1, 1, 1, 0, 0, 0, -1, 1});
+	CHECK(number_components({}, vertex_faces(2, {})).numbers == std::vector<Index> {-1, -1});
+}

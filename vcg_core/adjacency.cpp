@@ -186,4 +186,31 @@ void RingCollector::grow()
 	ends_.push_back(count);
 }
 
+Components number_components(const std::vector<Face>& faces, const IndexLists& around)
+{
+	Components components;
+	components.numbers.assign(around.offsets.size() - 1, -1);
+	std::vector<Index> open;
+	for (const Face& seed : faces) {
+		if (components.numbers[at(seed[0])] >= 0)
+			continue;
+		const Index number = components.count++;
+		components.numbers[at(seed[0])] = number;
+		open.push_back(seed[0]);
+		while (!open.empty()) {
+			const Index vertex = open.back();
+			open.pop_back();
+			for (const Index* it = around.begin(vertex); it != around.end(vertex); ++it) {
+				for (const Index corner : faces[at(*it)]) {
+					if (components.numbers[at(corner)] >= 0)
+						continue;
+					components.numbers[at(corner)] = number;
+					open.push_back(corner);
+				}
+			}
+		}
+	}
+	return components;
+}
+
 } // namespace orthopoly

@@ -51,6 +51,17 @@ struct IndexLists {
 /// once. #V lists.
 IndexLists vertex_faces(Index vertex_count, const std::vector<Face>& faces);
 
+/// The pieces of a mesh that do not share a vertex.
+struct Components {
+	Index count = 0;
+	/// #V: the number of the one that a vertex is of, in the order of their first faces; -1 for a
+	/// vertex without a face.
+	std::vector<Index> numbers;
+};
+
+/// @param around the faces around every vertex. O(#F).
+Components number_components(const std::vector<Face>& faces, const IndexLists& around);
+
 /// Edges where a mesh is not a closed surface.
 struct EdgeDefects {
 	/// #V flags: one where the vertex lies on an open edge, which belongs to one face only.

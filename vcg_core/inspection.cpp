@@ -43,38 +43,6 @@ Index count_duplicate_faces(const TriangleMesh& mesh)
 	return count_repeated(faces, std::less<>());
 }
 
-// Pieces that do not share a vertex.
-Index count_components(const std::vector<Face>& faces, const IndexLists& around)
-{
-	std::vector<bool> face_reached(faces.size(), false);
-	std::vector<bool> vertex_reached(around.offsets.size() - 1, false);
-	std::vector<Index> open;
-	Index count = 0;
-	for (std::size_t seed = 0; seed < faces.size(); ++seed) {
-		if (face_reached[seed])
-			continue;
-		++count;
-		face_reached[seed] = true;
-		open.push_back(static_cast<Index>(seed));
-		while (!open.empty()) {
-			const Face& face = faces[static_cast<std::size_t>(open.back())];
-			open.pop_back();
-			for (const Index vertex : face) {
-				if (vertex_reached[static_cast<std::size_t>(vertex)])
-					continue;
-				vertex_reached[static_cast<std::size_t>(vertex)] = true;
-				for (const Index* it = around.begin(vertex); it != around.end(vertex); ++it) {
-					if (!face_reached[static_cast<std::size_t>(*it)]) {
-						face_reached[static_cast<std::size_t>(*it)] = true;
-						open.push_back(*it);
-					}
-				}
-			}
-		}
-	}
-	return count;
-}
-
 } // namespace
 
 Inspection inspect(const TriangleMesh& mesh)
@@ -95,7 +63,7 @@ Inspection inspect(const TriangleMesh& mesh)
 	found.duplicate_vertices = count_duplicate_vertices(mesh);
 	found.duplicate_faces = count_duplicate_faces(mesh);
 	found.non_manifold_edges = edges.non_manifold;
-	found.components = count_components(mesh.faces, around);
+	found.components = number_components(mesh.faces, around).count;
 	return found;
 }
 

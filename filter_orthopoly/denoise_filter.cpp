@@ -103,13 +103,22 @@ std::string describe_nothing_to_do(const DenoiseOptions& options)
 		   "it all the same";
 }
 
+// How far the noise differs from place to place; nothing where it does not.
+std::string describe_range(const DenoiseResult& result)
+{
+	if (result.estimated_noise_low == result.estimated_noise_high)
+		return "";
+	return ", uneven: from " + in_words(result.estimated_noise_low) + " to " +
+		   in_words(result.estimated_noise_high) + " in most places";
+}
+
 void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseResult& result)
 {
 	const bool nothing_to_do = result.status == DenoiseResult::Status::NothingToDo;
 	if (options.method == Method::Adaptive)
 		run.log(
 			"noise along the surface normals: " + in_words(result.estimated_noise) +
-			" mean edge lengths (estimated)" +
+			" mean edge lengths (estimated)" + describe_range(result) +
 			(options.noise_level ? ", taken as " + in_words(*options.noise_level) : ""));
 	if (nothing_to_do)
 		run.log(describe_nothing_to_do(options));
@@ -148,7 +157,13 @@ void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseR
 			{"max_displacement", result.max_displacement},
 		});
 	if (options.method == Method::Adaptive)
-		run.outputs.emplace_back("estimated_noise", result.estimated_noise);
+		run.outputs.insert(
+			run.outputs.end(),
+			{
+				{"estimated_noise", result.estimated_noise},
+				{"estimated_noise_low", result.estimated_noise_low},
+				{"estimated_noise_high", result.estimated_noise_high},
+			});
 	report_resolved(run, result.resolved);
 }
 

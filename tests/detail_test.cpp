@@ -215,3 +215,22 @@ TEST_CASE("What is given back is the same on any number of threads", "[detail][p
 	CHECK(same_bits(results[0], results[1]));
 	CHECK(same_bits(results[0], results[2]));
 }
+
+TEST_CASE("What is detail where there is little noise is noise where there is much", "[detail]")
+{
+	// The same bumps were taken everywhere; half of the square has noise as high, the rest a tenth.
+	const TriangleMesh flat = make_flat_grid(60);
+	const TriangleMesh mesh = noisy(flat, 0.2);
+	const StepFixture f(mesh);
+	std::vector<double> factors;
+	std::vector<bool> noise;
+	for (const Point& p : flat.positions) {
+		noise.push_back(p.x() < 0.5);
+		factors.push_back(noise.back() ? 1 : 0.1);
+	}
+	std::vector<Point> positions = flat.positions;
+	give_back_detail(f.workspace, {0.2 * f.workspace.mean_edge_length, factors}, 1, positions);
+	const double whole = distance(mesh.positions, flat.positions, noise, true);
+	CHECK(distance(positions, flat.positions, noise, true) < 0.35 * whole);
+	CHECK(distance(positions, mesh.positions, noise, false) < 0.35 * whole);
+}

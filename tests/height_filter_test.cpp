@@ -339,3 +339,26 @@ TEST_CASE("The height filter can be stopped", "[height_filter]")
 		filtered_normals(workspace, {geometry.normals, geometry.centroids, mesh.positions}, {}),
 		Cancelled);
 }
+
+TEST_CASE("Vertices with more noise than others say less", "[height_filter]")
+{
+	// Every other vertex has eight times the noise.
+	const TriangleMesh flat = make_flat_grid(40);
+	const double edge = mean_edge_length(flat.positions, flat.faces);
+	std::vector<double> factors;
+	TriangleMesh mesh = noisy(flat, 0.05);
+	for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+		factors.push_back(i % 2 == 0 ? 1 : 8);
+		mesh.positions[i].z() *= factors.back();
+	}
+	const StepFixture f(mesh);
+	const std::vector<Point> guides(mesh.faces.size(), Point(0, 0, 1));
+	const auto angle = [&](const Deviations& sigma) {
+		HeightFilterOptions options = options_of(0, 3, 3);
+		options.sigma = sigma;
+		return mean_angle(
+			filtered_normals(f.workspace, {guides, f.geometry.centroids, mesh.positions}, options),
+			[](std::size_t) { return Point(0, 0, 1); });
+	};
+	CHECK(angle({0.05 * edge, factors}) < 0.6 * angle(0.3 * edge));
+}

@@ -207,3 +207,16 @@ TEST_CASE("The estimate is the same on any number of threads", "[noise_level][pa
 	for (const int threads : {2, 4})
 		CHECK(estimated(mesh, threads) == expected);
 }
+
+TEST_CASE("The estimate is the same whichever way a mesh lies", "[noise_level]")
+{
+	// More vertices than any sample has: these are to be the same ones.
+	const TriangleMesh mesh = noisy(make_part(60000), 0.25, NoiseDirection::Random);
+	const double expected = estimated(mesh);
+	const Eigen::Matrix3d rotation = some_rotation();
+	const auto turn = [&](const Point& p) { return Point(1e3 * (rotation * p)); };
+	CHECK(
+		estimated(with_positions(mesh, each(mesh.positions, turn))) ==
+		Approx(expected).epsilon(1e-9));
+	CHECK(expected > 0.1);
+}

@@ -224,3 +224,29 @@ TEST_CASE("A quantile has that share of the values below it", "[sampling]")
 	std::for_each(values.begin() + 60, values.end(), [](double& v) { v *= 1e9; });
 	CHECK(quantile(values, 0.3) == before);
 }
+
+TEST_CASE("A part of a sample has those of the same values in any order", "[sampling]")
+{
+	std::vector<double> values;
+	const std::vector<double> all = areas(200000);
+	for (const Index i : sample_by_value(all, 20000))
+		values.push_back(all[static_cast<std::size_t>(i)]);
+	const auto chosen = [](const std::vector<double>& given) {
+		std::vector<double> result;
+		for (const std::size_t k : subsample_by_value(given, 500))
+			result.push_back(given[k]);
+		std::sort(result.begin(), result.end());
+		return result;
+	};
+	const std::vector<double> expected = chosen(values);
+	CHECK(expected.size() > 350);
+	CHECK(expected.size() < 650);
+	std::reverse(values.begin(), values.end());
+	CHECK(chosen(values) == expected);
+	// All alike: by number.
+	const std::vector<std::size_t> alike = subsample_by_value(std::vector<double>(20000, 2.0), 500);
+	CHECK(alike.size() > 350);
+	CHECK(alike.size() < 650);
+	CHECK(subsample_by_value(areas(700), 500).size() == 700);
+	CHECK(subsample_by_value({}, 500).empty());
+}

@@ -58,6 +58,18 @@ noisy(TriangleMesh mesh, double sigma, NoiseDirection direction = NoiseDirection
 	return mesh;
 }
 
+/// The same with a share of the noise that depends on the place: `share(point)` of it.
+template<class Share>
+TriangleMesh unevenly_noisy(const TriangleMesh& mesh, double sigma, Share share)
+{
+	TriangleMesh result = noisy(mesh, sigma);
+	for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+		const Point& p = mesh.positions[i];
+		result.positions[i] = p + share(p) * (result.positions[i] - p);
+	}
+	return result;
+}
+
 /// A rotation about no axis in particular.
 inline Eigen::Matrix3d some_rotation()
 {

@@ -2,6 +2,7 @@
 #include "adaptive_method.h"
 
 #include "detail.h"
+#include "deviations.h"
 #include "height_filter.h"
 #include "interpolation.h"
 #include "noise_correlation.h"
@@ -9,6 +10,7 @@
 #include "normal_filter.h"
 #include "outliers.h"
 #include "prefilter.h"
+#include "sampling.h"
 #include "unfolding.h"
 #include "vertex_update.h"
 
@@ -142,6 +144,10 @@ constexpr int MOST_LOWERINGS = 4;
 
 // A noise level that is set counts from here: less is rounding in the files that meshes come in.
 constexpr double NEGLIGIBLE_NOISE = 1e-6;
+
+// Share of the vertices whose noise is below the low end of what is told of it, and above the high
+// one.
+constexpr double LOW_SHARE = 0.1;
 
 // No threshold of similar directions is higher, however many iterations raise it: with none but the
 // face itself above it, there would be nothing to tell the noise by.
@@ -303,15 +309,15 @@ void record(const Plan& plan, DenoiseOptions& resolved)
 // Independent noise at the corners tilts a triangle by a mean square of sigma^2 times the sum of
 // its squared edges over four times its squared area; turned so far that it could be anywhere, it
 // tells no more.
-std::vector<double>
-scatters_by(double sigma, const Workspace& workspace, const std::vector<Point>& positions)
+std::vector<double> scatters_by(
+	const Deviations& deviations, const Workspace& workspace, const std::vector<Point>& positions)
 {
-	if (!(sigma > 0))
+	if (!(deviations.overall() > 0))
 		return {};
 	std::vector<double> scatters(workspace.mesh.faces.size());
 	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
 		const Face& face = workspace.mesh.faces[i];
-		const double tilt = sigma * sigma * edge_squares(positions, face);
+		const double tilt = deviations.square_at(face) * edge_squares(positions, face);
 		const double total = tilt + face_cross_product(positions, face).squaredNorm();
 		scatters[i] = total > 0 ? tilt / total : 1;
 	});
@@ -343,8 +349,14 @@ NormalField normal_field(
 /// One run of the method.
 class AdaptiveMethod {
 public:
-	AdaptiveMethod(const Workspace& workspace, const Plan& plan, std::vector<Point>& positions) :
-			workspace_(workspace), plan_(plan), sigma_(plan.noise * workspace.mean_edge_length),
+	/// @param factors of the noise, as those of `Deviations`
+	AdaptiveMethod(
+		const Workspace& workspace,
+		const Plan& plan,
+		const std::vector<double>& factors,
+		std::vector<Point>& positions) :
+			workspace_(workspace),
+			plan_(plan), deviations_(plan.noise * workspace.mean_edge_length, factors),
 			positions_(positions)
 	{
 	}
@@ -354,10 +366,10 @@ public:
 	{
 		prefilter();
 		// The level is in edge lengths of the surface below the noise, which lengthens them.
-		sigma_ = plan_.noise * mean_edge_length(workspace_, positions_);
+		deviations_.set_overall(plan_.noise * mean_edge_length(workspace_, positions_));
 		const std::vector<Point> start = positions_;
 		const FaceGeometry original = face_geometry(workspace_, positions_);
-		const std::vector<double> scatters = scatters_by(sigma_, workspace_, start);
+		const std::vector<double> scatters = scatters_by(deviations_, workspace_, start);
 		for (int iteration = 0; iteration < plan_.iterations; ++iteration) {
 			const bool last = iteration + 1 == plan_.iterations;
 			NormalField field = normal_field(
@@ -381,16 +393,16 @@ public:
 				update.paces = &paces;
 			update_vertices(workspace_, normals, update, positions_);
 			// Eq. 12 lets vertices slide where normals do not agree; noise does not reach so far.
-			bound_drift(start, DRIFT_BOUND * sigma_);
+			bound_drift(start, DRIFT_BOUND);
 			if (unfold_faces(workspace_, normals, positions_))
-				bound_drift(start, DRIFT_BOUND * sigma_);
+				bound_drift(start, DRIFT_BOUND);
 			if (!last && plan_.guiding < 1)
 				go_back(start, 1 - plan_.guiding);
 		}
 		// Noise that goes together over several edges moves vertices together as well.
 		if (plan_.correlation == 1)
 			return {};
-		return give_back_detail(workspace_, sigma_, 1 - plan_.correlation, positions_);
+		return give_back_detail(workspace_, deviations_, 1 - plan_.correlation, positions_);
 	}
 
 private:
@@ -405,7 +417,8 @@ private:
 				std::to_string(plan_.iterations) + ": " + words);
 	}
 
-	// Keeps every vertex within a distance of the way from where it was measured to a place.
+	// Keeps every vertex within so many deviations of the way from where it was measured to a
+	// place.
 	void bound_drift(const std::vector<Point>& to, double bound)
 	{
 		if (plan_.correlation == 1)
@@ -419,8 +432,9 @@ private:
 			const double share = square > 0 ? move.dot(way) / square : 0;
 			const Point drift = move - std::min(1.0, std::max(0.0, share)) * way;
 			const double length = drift.norm();
-			if (length > bound)
-				positions_[i] -= (1 - bound / length) * drift;
+			const double longest = bound * deviations_[i];
+			if (length > longest)
+				positions_[i] -= (1 - longest / length) * drift;
 		});
 	}
 
@@ -439,13 +453,13 @@ private:
 		taubin_smooth(workspace_, prefilter_pairs(), positions_);
 		if (plan_.correlation == 1)
 			return;
-		bound_drift(measured, PREFILTER_BOUND * sigma_);
+		bound_drift(measured, PREFILTER_BOUND);
 		for (int pair = 0; pair < UNFOLDING_PAIRS; ++pair) {
-			const FoldCriterion criterion {FOLD_COSINE, FOLD_HEIGHT * sigma_};
+			const FoldCriterion criterion {FOLD_COSINE, FOLD_HEIGHT * deviations_.largest()};
 			taubin_smooth(
 				workspace_, 1, positions_, folded_vertices(workspace_, positions_, criterion));
 		}
-		bound_drift(measured, UNFOLDING_BOUND * sigma_);
+		bound_drift(measured, UNFOLDING_BOUND);
 	}
 
 	// Taubin pairs of each vertex: small triangles scatter more, and fold before large ones do.
@@ -453,14 +467,15 @@ private:
 	std::vector<double> prefilter_pairs() const
 	{
 		std::vector<double> pairs(positions_.size());
-		const double variance = sigma_ * sigma_;
 		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
 			const double square =
 				mean_edge_square_around(workspace_, positions_, static_cast<Index>(i));
 			// The noise of both ends is in an edge.
-			const double clean = std::max(square - 2 * variance, LEAST_CLEAN_SHARE * square);
-			const double local = clean > 0 ? sigma_ / std::sqrt(clean) : 0.0;
-			const double white = prefilter_pairs_for(std::max(plan_.noise, local));
+			const double sigma = deviations_[i];
+			const double clean = std::max(square - 2 * sigma * sigma, LEAST_CLEAN_SHARE * square);
+			const double local = clean > 0 ? sigma / std::sqrt(clean) : 0.0;
+			const double white =
+				prefilter_pairs_for(std::max(plan_.noise * deviations_.factor(i), local));
 			pairs[i] = between(white, plan_.scanner_pairs, plan_.correlation);
 		});
 		return pairs;
@@ -495,7 +510,7 @@ private:
 		}
 		options.largest_ring = plan_.height_rings;
 		options.loosening = HEIGHT_LOOSENING;
-		options.sigma = sigma_;
+		options.sigma = deviations_;
 		options.selection = HEIGHT_SELECTION;
 		const HeightNormals refined = normals_from_heights(
 			workspace_, {normals, centroids, workspace_.mesh.positions}, options);
@@ -534,15 +549,14 @@ private:
 				}
 			}
 			if (count > 0)
-				paces[i] = 1 / (1 + std::min(SLOWEST, scale * sum / count));
+				paces[i] = 1 / (1 + std::min(SLOWEST, scale / deviations_.factor(i) * sum / count));
 		});
 		return paces;
 	}
 
 	const Workspace& workspace_;
 	const Plan& plan_;
-	/// Noise in the caller's length unit.
-	double sigma_ = 0;
+	Deviations deviations_;
 	std::vector<Point>& positions_;
 };
 
@@ -553,6 +567,7 @@ std::optional<TakenMoves> run_at(
 	const Workspace& workspace,
 	const DenoiseOptions& options,
 	double correlation,
+	const std::vector<double>& factors,
 	DenoiseResult& result,
 	std::vector<Point>& positions)
 {
@@ -565,7 +580,7 @@ std::optional<TakenMoves> run_at(
 	if (nothing)
 		return std::nullopt;
 	positions = workspace.mesh.positions;
-	return AdaptiveMethod(workspace, plan, positions).run();
+	return AdaptiveMethod(workspace, plan, factors, positions).run();
 }
 
 // Runs the method at the estimated level or the one that is set; where what an estimate takes
@@ -574,12 +589,13 @@ void lower_and_run(
 	const Workspace& workspace,
 	const DenoiseOptions& options,
 	double correlation,
+	const std::vector<double>& factors,
 	DenoiseResult& result,
 	std::vector<Point>& positions)
 {
 	const double strength = strength_factor(options.strength);
 	const auto run = [&](double noise) {
-		return run_at(noise, workspace, options, correlation, result, positions);
+		return run_at(noise, workspace, options, correlation, factors, result, positions);
 	};
 	std::optional<TakenMoves> taken = run(strength * *result.resolved.noise_level);
 	if (options.noise_level || correlation > 0 || !taken || taken->predicted < DETAIL)
@@ -602,6 +618,39 @@ void lower_and_run(
 		positions = workspace.mesh.positions;
 }
 
+// The same with the outliers put back first, and the other vertices in the end.
+void repair_and_run(
+	const Workspace& workspace,
+	const DenoiseOptions& options,
+	double correlation,
+	const OutlierRepair& outliers,
+	DenoiseResult& result,
+	std::vector<Point>& positions)
+{
+	const double noise = *result.resolved.noise_level * strength_factor(options.strength);
+	TriangleMesh mesh = workspace.mesh;
+	mesh.positions = outliers.positions;
+	const Workspace repaired(mesh, workspace.execution);
+	if (!run_at(noise, repaired, options, correlation, {}, result, positions))
+		return;
+	give_back_inliers(
+		repaired,
+		outliers.left * mean_edge_length(repaired, positions),
+		outliers.share * way_between(MANY_OUTLIERS, FEW_OUTLIERS, outliers.found),
+		positions);
+}
+
+// Between what levels most of the noise is.
+void record_range(const std::vector<double>& factors, DenoiseResult& result)
+{
+	const auto level_at = [&](double share) {
+		std::vector<double> sorted = factors;
+		return result.estimated_noise * (factors.empty() ? 1 : quantile(sorted, share));
+	};
+	result.estimated_noise_low = level_at(LOW_SHARE);
+	result.estimated_noise_high = level_at(1 - LOW_SHARE);
+}
+
 } // namespace
 
 void run_adaptive_method(
@@ -616,30 +665,27 @@ void run_adaptive_method(
 	if (options.noise_type == NoiseType::Automatic && levels.rough >= LEAST_NOISE)
 		correlation = measure_noise_correlation(workspace, workspace.mesh.positions).certainty();
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
+	UnevenNoise uneven;
+	if (correlation == 0)
+		uneven = levels.uneven;
+	// Beside a clean part noise looks like outliers.
 	OutlierRepair outliers;
-	if (correlation < 1)
+	if (correlation < 1 && uneven.certainty < 0.5)
 		outliers = repair_outliers(workspace, levels);
+	if (outliers.share > 0)
+		uneven = {};
 	// Noise that goes together over several edges grows with the rings as detail does.
 	const double white = outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;
-	const double level = between(white, levels.rough, correlation);
+	const double even = between(white, levels.rough, correlation);
+	const double level = between(even, uneven.level, uneven.certainty);
 	result.estimated_noise = between(level, outliers.level, outliers.share);
 	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
 	result.resolved.noise_type = correlation > 0.5 ? NoiseType::Scanner : NoiseType::White;
-	if (outliers.share == 0) {
-		lower_and_run(workspace, options, correlation, result, positions);
-		return;
-	}
-	const double noise = *result.resolved.noise_level * strength_factor(options.strength);
-	TriangleMesh mesh = workspace.mesh;
-	mesh.positions = outliers.positions;
-	const Workspace repaired(mesh, workspace.execution);
-	if (!run_at(noise, repaired, options, correlation, result, positions))
-		return;
-	give_back_inliers(
-		repaired,
-		outliers.left * mean_edge_length(repaired, positions),
-		outliers.share * way_between(MANY_OUTLIERS, FEW_OUTLIERS, outliers.found),
-		positions);
+	if (outliers.share == 0)
+		lower_and_run(workspace, options, correlation, uneven.factors, result, positions);
+	else
+		repair_and_run(workspace, options, correlation, outliers, result, positions);
+	record_range(uneven.factors, result);
 }
 
 } // namespace orthopoly

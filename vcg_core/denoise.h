@@ -38,8 +38,9 @@ struct DenoiseOptions {
 	/// The result says which of the two it was taken for; in between, which it was closer to.
 	NoiseType noise_type = NoiseType::Automatic;
 	/// Adaptive: standard deviation of the noise along the normal before `strength` is applied to
-	/// it, in mean edge lengths of the surface below the noise (which lengthens them). One that is
-	/// given is used however small; below an estimate of 0.025 nothing is done.
+	/// it, in mean edge lengths of the surface below the noise (which lengthens them); where the
+	/// noise differs from place to place, the root mean square. One that is given is used however
+	/// small; below an estimate of 0.025 nothing is done.
 	std::optional<double> noise_level;
 	/// Rounds of normal filtering and vertex update (n_iter of the paper: 5).
 	std::optional<int> iterations;
@@ -86,6 +87,10 @@ struct DenoiseResult {
 	/// Adaptive: estimated noise along the normal, in the unit of `noise_level`, also where a level
 	/// was given.
 	double estimated_noise = 0;
+	/// What a tenth of the vertices is below and another tenth above, where the noise differs from
+	/// place to place; `estimated_noise` is the root mean square then. The same as that elsewhere.
+	double estimated_noise_low = 0;
+	double estimated_noise_high = 0;
 	int iterations_done = 0;
 	/// Faces without area, which are neither filtered nor vote.
 	Index degenerate_faces = 0;

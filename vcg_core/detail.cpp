@@ -46,6 +46,10 @@ constexpr double RIDGED = 0.2;
 constexpr double SURELY_RIDGED = 0.35;
 constexpr Index PREDICTIONS = 2000;
 
+// Vertices with less than this part of the overall noise do not say how much of it is detail: what
+// they have been moved by is none of it.
+constexpr double NOISY = 0.5;
+
 // The same of a vertex's surroundings, on a mesh that has them.
 constexpr double RIDGE_BEGINS = 0.1;
 constexpr double RIDGE = 0.3;
@@ -73,7 +77,7 @@ constexpr double LARGEST_DISTANCE = 0.035;
 constexpr Index GRAIN = 256;
 
 Moves moves_along_normals(
-	const Workspace& workspace, double sigma, const std::vector<Point>& positions)
+	const Workspace& workspace, const Deviations& sigma, const std::vector<Point>& positions)
 {
 	Moves moves {
 		std::vector<double>(positions.size(), 0.0),
@@ -85,7 +89,7 @@ Moves moves_along_normals(
 			return;
 		moves.crosses[i] = cross;
 		const Point normal = cross / length;
-		const double move = (workspace.mesh.positions[i] - positions[i]).dot(normal) / sigma;
+		const double move = (workspace.mesh.positions[i] - positions[i]).dot(normal) / sigma[i];
 		moves.lengths[i] = std::max(-LARGEST_MOVE, std::min(LARGEST_MOVE, move));
 	});
 	return moves;
@@ -120,7 +124,7 @@ void average(const Workspace& workspace, int times, std::vector<Value>& values)
 
 // The same without those of vertices on edges.
 Moves moves_beside_edges(
-	const Workspace& workspace, double sigma, const std::vector<Point>& positions)
+	const Workspace& workspace, const Deviations& sigma, const std::vector<Point>& positions)
 {
 	Moves moves = moves_along_normals(workspace, sigma, positions);
 	const std::vector<double> areas = areas_around(workspace, positions);
@@ -132,7 +136,8 @@ Moves moves_beside_edges(
 }
 
 // Takes vertices back along what their moves have in common with those around them.
-void give_back_common(const Workspace& workspace, double sigma, std::vector<Point>& positions)
+void give_back_common(
+	const Workspace& workspace, const Deviations& sigma, std::vector<Point>& positions)
 {
 	const Moves moves = moves_beside_edges(workspace, sigma, positions);
 	// Averaged once and twice, half of each: detail is narrow where there is little noise, and as
@@ -154,7 +159,7 @@ void give_back_common(const Workspace& workspace, double sigma, std::vector<Poin
 			return;
 		const double gain = std::min(LARGEST_GAIN, common / means[i][1]);
 		const double certainty = way_between(CHANCE, CERTAIN, gain * common);
-		positions[i] += certainty * gain * averages[i] * sigma * moves.crosses[i].normalized();
+		positions[i] += certainty * gain * averages[i] * sigma[i] * moves.crosses[i].normalized();
 	});
 }
 
@@ -179,7 +184,8 @@ std::vector<PredictedMove> predict_moves(
 }
 
 // Takes vertices back as far as their neighbours predict it, on a mesh that has ridges.
-TakenMoves give_back_ridges(const Workspace& workspace, double sigma, std::vector<Point>& positions)
+TakenMoves
+give_back_ridges(const Workspace& workspace, const Deviations& sigma, std::vector<Point>& positions)
 {
 	const Moves moves = moves_beside_edges(workspace, sigma, positions);
 	const std::vector<MovePredictor::DirectedMoves> directed =
@@ -187,9 +193,12 @@ TakenMoves give_back_ridges(const Workspace& workspace, double sigma, std::vecto
 	const std::vector<Index> sample = sample_vertices(workspace, positions, PREDICTIONS);
 	std::vector<double> shares;
 	std::vector<double> squares;
-	for (const PredictedMove& predicted : predict_moves(workspace, moves, directed, sample)) {
-		shares.push_back(predicted.share);
-		squares.push_back(predicted.square);
+	const std::vector<PredictedMove> sampled = predict_moves(workspace, moves, directed, sample);
+	for (std::size_t k = 0; k < sampled.size(); ++k) {
+		if (sigma.factor(at(sample[k])) < NOISY)
+			continue;
+		shares.push_back(sampled[k].share);
+		squares.push_back(sampled[k].square);
 	}
 	const TakenMoves taken = {quantile(squares, 0.5), quantile(shares, 0.5)};
 	const double ridged = way_between(RIDGED, SURELY_RIDGED, taken.predicted);
@@ -203,8 +212,8 @@ TakenMoves give_back_ridges(const Workspace& workspace, double sigma, std::vecto
 	const std::vector<PredictedMove> predicted = predict_moves(workspace, moves, directed, all);
 	workspace.execution.for_each(static_cast<Index>(all.size()), [&](std::size_t k) {
 		const double certainty = ridged * way_between(RIDGE_BEGINS, RIDGE, predicted[k].share);
-		positions[at(all[k])] +=
-			certainty * predicted[k].length * sigma * moves.crosses[at(all[k])].normalized();
+		positions[at(all[k])] += certainty * predicted[k].length * sigma[at(all[k])] *
+								 moves.crosses[at(all[k])].normalized();
 	});
 	return taken;
 }
@@ -226,7 +235,7 @@ void give_back(
 } // namespace
 
 TakenMoves give_back_detail(
-	const Workspace& workspace, double sigma, double most, std::vector<Point>& positions)
+	const Workspace& workspace, const Deviations& sigma, double most, std::vector<Point>& positions)
 {
 	std::vector<Point> given = positions;
 	give_back_common(workspace, sigma, given);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "deviations.h"
 #include "workspace.h"
 
 #include <vector>
@@ -9,7 +10,8 @@ namespace orthopoly {
 
 /// What denoising took from the vertices, along their normals.
 struct TakenMoves {
-	/// Median over the vertices of the mean square around each, in noise variances.
+	/// Median over the vertices (those with at least half of the overall noise) of the mean square
+	/// around each, in noise variances.
 	double square = 0;
 	/// And of the share of the variance that neighbours predict (see MovePredictor): detail, but
 	/// for a little that is chance.
@@ -32,20 +34,24 @@ struct TakenMoves {
 /// workspace's mesh) which is not noise: one less the noise variance, with a margin, over the mean
 /// square of the moves, as a Wiener filter has it.
 ///
-/// @param sigma     standard deviation of the noise along the normal, the caller's length unit; > 0
+/// @param sigma     the noise; > 0
 /// @param most      share of the way at most, 0 to 1
 /// @param positions #V denoised, moved in place; fixed vertices stay bit for bit
 ///
 /// Returns what was taken, ridges and grooves included. O(#V); the same bits on any number of
 /// threads. Throws Cancelled.
 TakenMoves give_back_detail(
-	const Workspace& workspace, double sigma, double most, std::vector<Point>& positions);
+	const Workspace& workspace,
+	const Deviations& sigma,
+	double most,
+	std::vector<Point>& positions);
 
 /// The same where outliers made the noise, so that the other vertices were never off: those that
 /// have been moved no further than is ordinary around them go all the way back, but for the noise
 /// that is left without the outliers.
 ///
-/// Parameters, cost and errors as those of `give_back_detail`; sigma is the noise that is left.
+/// Parameters, cost and errors as those of `give_back_detail`; sigma is the noise that is left, its
+/// standard deviation along the normal in the caller's length unit.
 void give_back_inliers(
 	const Workspace& workspace, double sigma, double most, std::vector<Point>& positions);
 

@@ -132,8 +132,8 @@ public:
 			workspace_(workspace),
 			field_(field), options_(options), chosen_(chosen),
 			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring)),
-			variance_(options.sigma * scale_ * options.sigma * scale_), best_(options.largest_ring),
-			tried_(options.largest_ring)
+			variance_(options.sigma.overall() * scale_ * options.sigma.overall() * scale_),
+			best_(options.largest_ring), tried_(options.largest_ring)
 	{
 		for (const int size : SIZES) {
 			if (size >= options.smallest_ring && size < options.largest_ring)
@@ -159,10 +159,15 @@ public:
 		guides_.emplace_back(Point::Zero());
 		places_.emplace_back(Point::Zero());
 		positions_.clear();
-		for (const Index i : patch_.mesh_vertices())
+		weights_.clear();
+		for (const Index i : patch_.mesh_vertices()) {
+			const double factor = options_.sigma.factor(at(i));
 			positions_.push_back(field_.positions[at(i)]);
+			weights_.push_back(1 / (factor * factor));
+		}
 		// The same for groups of vertices.
 		positions_.emplace_back(Point::Zero());
+		weights_.push_back(0);
 		stamps_.assign(positions_.size(), 0);
 		stamp_ = 0;
 	}
@@ -295,7 +300,6 @@ private:
 		const Point tangent = scale_ * tried_.tangent;
 		const Point bitangent = scale_ * tried_.bitangent;
 		const Point guide = scale_ * guides_[at(i)];
-		const auto nobody = static_cast<Index>(positions_.size()) - 1;
 		tried_.groups.resize(tried_.vertices.size() / LANES);
 		for (std::size_t k = 0; k < tried_.groups.size(); ++k) {
 			const Index* const vertices = tried_.vertices.data() + LANES * k;
@@ -304,9 +308,7 @@ private:
 			group.x = dot(offset, tangent);
 			group.y = dot(offset, bitangent);
 			group.height = dot(offset, guide);
-			const auto weight = [&](std::size_t lane) {
-				return vertices[lane] == nobody ? 0.0 : 1.0;
-			};
+			const auto weight = [&](std::size_t lane) { return weights_[at(vertices[lane])]; };
 			group.weight = Lanes({weight(0), weight(1), weight(2), weight(3)});
 		}
 	}
@@ -476,6 +478,8 @@ private:
 	std::vector<Point> guides_;
 	std::vector<Point> places_;
 	std::vector<Point> positions_;
+	/// Of the vertices: with them the noise of all is the overall one.
+	std::vector<double> weights_;
 	/// The structure each vertex was last gathered for, by a number of its own.
 	std::vector<Index> stamps_;
 	Index stamp_ = 0;

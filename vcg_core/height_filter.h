@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "deviations.h"
 #include "lanes.h"
 #include "workspace.h"
 
@@ -34,8 +35,8 @@ struct HeightFilterOptions {
 	int faces_per_structure = 1;
 	/// Work on four doubles at once, which only a processor with wide lanes can. The same bits.
 	bool wide_lanes = has_wide_lanes();
-	/// Standard deviation of the noise of the positions along the normal, the caller's length unit.
-	double sigma = 0;
+	/// The noise of the positions.
+	Deviations sigma = 0;
 	/// A coefficient beyond the plane is kept where its energy exceeds this many noise variances.
 	double selection = 9;
 };

@@ -145,14 +145,20 @@ double LocalHeights::edge_correlation() const
 											  0;
 }
 
+double area_around(const Workspace& workspace, const std::vector<Point>& positions, Index vertex)
+{
+	double area = 0;
+	const IndexLists& around = workspace.vertex_faces;
+	for (const Index* face = around.begin(vertex); face != around.end(vertex); ++face)
+		area += face_cross_product(positions, workspace.mesh.faces[at(*face)]).norm();
+	return area;
+}
+
 std::vector<double> areas_around(const Workspace& workspace, const std::vector<Point>& positions)
 {
-	std::vector<double> areas(positions.size(), 0.0);
-	const IndexLists& around = workspace.vertex_faces;
+	std::vector<double> areas(positions.size());
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		const auto vertex = static_cast<Index>(i);
-		for (const Index* face = around.begin(vertex); face != around.end(vertex); ++face)
-			areas[i] += face_cross_product(positions, workspace.mesh.faces[at(*face)]).norm();
+		areas[i] = area_around(workspace, positions, static_cast<Index>(i));
 	});
 	return areas;
 }

@@ -80,7 +80,10 @@ private:
 	std::vector<double> sizes_;
 };
 
-/// #V sums of the face areas around every vertex, times two.
+/// Sum of the face areas around a vertex, times two; zero for one without a face.
+double area_around(const Workspace& workspace, const std::vector<Point>& positions, Index vertex);
+
+/// The same around every vertex, #V.
 std::vector<double> areas_around(const Workspace& workspace, const std::vector<Point>& positions);
 
 /// About `wanted` of the vertices that may move, to read off them what they are like: the same ones

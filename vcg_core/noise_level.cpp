@@ -3,6 +3,7 @@
 
 #include "interpolation.h"
 #include "local_heights.h"
+#include "residual_variances.h"
 #include "sampling.h"
 
 #include <Eigen/Cholesky>
@@ -16,18 +17,7 @@ namespace orthopoly {
 
 namespace {
 
-/// A share of the residual variances and the same quantile of the normal distribution.
-struct Quantile {
-	double share;
-	double normal;
-};
-
-// The share that is taken as free of features, which only ever add to the variances: low for coarse
-// meshes with few flat places, but not so low that it is ruled by the tail of noise that is not
-// Gaussian.
-constexpr Quantile FLAT = {0.2, -0.8416};
-
-// And one at which there are outliers among the neighbours.
+// The share of the variances at which there are outliers among the neighbours.
 constexpr Quantile ORDINARY = {0.5, 0};
 
 // The quantile of so many variances is steady to about one per cent.
@@ -36,51 +26,18 @@ constexpr Index SAMPLES = 20000;
 // Polynomials that tell the kind of noise: wide ones, since narrow ones follow an outlier, and
 // fewer, since they are slow.
 constexpr int WIDE_RINGS = 4;
-constexpr std::size_t WIDE_SAMPLES = 2000;
-
-// Noise leaves the same over any number of rings, detail as small as the triangles leaves more the
-// wider they are. From two rings to three the detail's part grows by this factor at least, or by
-// that from three to four where it is more.
-constexpr double GROWTH_OF_DETAIL = 1.9;
-
-// Growth of the variance that is not taken for that of detail: a little comes of curvature, and of
-// noise that is not Gaussian.
-constexpr double GROWTH_OF_NOISE = 1.1;
+constexpr Index WIDE_SAMPLES = 2000;
 
 // Edges grow with the rings as well, but similar faces leave less than this part of what whole
 // rings do then; of detail they leave the second part at least.
 constexpr double EDGES = 0.85;
 constexpr double NO_EDGES = 0.91;
 
-// The shares of the variances that are compared.
-constexpr std::array<Quantile, 3> GROWING = {
-	Quantile {0.1, -1.2816}, Quantile {0.2, -0.8416}, Quantile {0.35, -0.3853}};
-
 // Where a mesh is so coarse that edges are everywhere, polynomials over whole rings take them for
 // noise. So do others, over the faces alone whose normals are within this cosine (37 degrees) of
-// the vertex's. They need no share so low, and a few of them tell what the level is without the
-// edges; it is taken where it is lower by more than what choosing the faces takes away.
+// the vertex's, and a few of them tell what the level is without the edges.
 constexpr double SIMILAR = 0.8;
-constexpr Quantile SIMILAR_FLAT = {0.35, -0.3853};
-constexpr std::size_t SIMILAR_SAMPLES = 5000;
-constexpr double SIMILAR_LEVEL = 0.97;
-
-// Between these levels, in edge lengths, the normals of the smoothed surface come to scatter as
-// far as that, and the choice takes noise away.
-constexpr double SIMILAR_TO = 0.33;
-constexpr double SIMILAR_NEVER = 0.5;
-
-// Noise leaves hardly a pair of faces in one plane, while surfaces that were drawn have many. Below
-// the first share of what noise of the level makes of this share of the pairs there is none, from
-// the second on there may be; strong noise, which bends edges less than it would were the surface
-// flat, makes a third at least.
-constexpr Quantile IN_PLANE = {0.2, 0.2533};
-constexpr double DRAWN = 0.1;
-constexpr double MEASURED = 0.25;
-
-// A corner seen so far off the other face in its plane says more of the noise there than of the
-// angle between both: sum of the sizes of its barycentric coordinates.
-constexpr double FAR_OFF = 8;
+constexpr Index SIMILAR_SAMPLES = 5000;
 
 // Triangles lower than this many deviations of the noise are turned by it so far that heights over
 // the smoothed surface miss a part of it: half of it where they are half a deviation low. What is
@@ -96,12 +53,6 @@ constexpr Index GRAIN = 64;
 // Rings of vertices of a polynomial.
 constexpr int RINGS = 2;
 
-/// A residual variance, negative where there is none, and its degrees of freedom.
-struct Variance {
-	double value = -1;
-	double free = 0;
-};
-
 /// Quadratic height polynomials over the similar faces around vertices.
 class SimilarHeights {
 public:
@@ -115,7 +66,7 @@ public:
 	{
 	}
 
-	Variance fit(Index vertex)
+	ResidualVariance fit(Index vertex)
 	{
 		Point normal = cross_product_around(workspace_, smooth_, vertex);
 		const double length = normal.norm();
@@ -205,14 +156,6 @@ private:
 // half of the noise of both ends across itself, 2 / 2, and a little more in the next order.
 constexpr double LENGTHENING = 1.2;
 
-// The quantile of the mean of squares over so many degrees of freedom, for noise of variance one
-// (Wilson and Hilferty 1931).
-double quantile_of_variance(const Quantile& quantile, double free)
-{
-	const double spread = 2 / (9 * free);
-	return std::pow(1 - spread + quantile.normal * std::sqrt(spread), 3);
-}
-
 // The mean edge length of the surface below the noise, whose deviation along the normals is given
 // in the caller's length unit.
 //
@@ -241,17 +184,6 @@ double clean_edge_length(
 		smoothed, mean_edge_length(workspace, flattened) / (1 + LENGTHENING * relative * relative));
 }
 
-// The level that so many variances tell; zero where there is none.
-double level(const std::vector<Variance>& variances, const Quantile& wanted)
-{
-	std::vector<double> values;
-	for (const Variance& variance : variances) {
-		if (variance.value >= 0)
-			values.push_back(variance.value / quantile_of_variance(wanted, variance.free));
-	}
-	return std::sqrt(quantile(values, wanted.share));
-}
-
 // The mean height of the triangles around each of some vertices, over their longest sides.
 std::vector<double> triangle_heights(
 	const Workspace& workspace,
@@ -273,156 +205,51 @@ std::vector<double> triangle_heights(
 	return heights;
 }
 
-// Takes the variances of every so-manieth vertex away where its triangles are lower than that.
+// Takes the variances away where the triangles around the vertex are lower than that.
 void leave_out_lower(
-	const std::vector<double>& heights,
-	std::size_t every,
-	double least,
-	std::vector<Variance>& variances)
+	const std::vector<double>& heights, double least, std::vector<ResidualVariance>& variances)
 {
 	for (std::size_t i = 0; i < variances.size(); ++i) {
-		if (heights[every * i] < least)
+		if (heights[i] < least)
 			variances[i].value = -1;
 	}
 }
 
 // The height of triangles from which the variances of as many vertices tell all of the noise.
-double
-least_steady_height(const std::vector<double>& heights, const std::vector<Variance>& variances)
+double least_steady_height(
+	const std::vector<double>& heights, const std::vector<ResidualVariance>& variances)
 {
 	std::vector<double> values = heights;
 	const double largest = quantile(values, 1 - LEAST_STEADY);
 	double least = 0;
 	for (int round = 0; round < STEADY_ROUNDS; ++round) {
-		std::vector<Variance> kept = variances;
-		leave_out_lower(heights, 1, least, kept);
-		least = std::min(largest, STEADY_HEIGHT * level(kept, FLAT));
+		std::vector<ResidualVariance> kept = variances;
+		leave_out_lower(heights, least, kept);
+		least = std::min(largest, STEADY_HEIGHT * level_of(kept, FLAT));
 	}
 	return least;
 }
 
-std::vector<Variance> similar_variances(
+// Of the vertices with these numbers in the sample.
+std::vector<ResidualVariance> similar_variances(
 	const Workspace& workspace,
 	const std::vector<Point>& positions,
 	const std::vector<Point>& smooth,
 	const std::vector<Index>& sample,
-	std::size_t every)
+	const std::vector<std::size_t>& numbers)
 {
-	std::vector<Variance> variances(sample.size() / every);
+	std::vector<ResidualVariance> variances(sample.size());
 	std::vector<SimilarHeights> heights(
 		static_cast<std::size_t>(workspace.execution.threads()),
 		SimilarHeights(workspace, positions, smooth));
 	workspace.execution.parallel_for(
-		static_cast<Index>(variances.size()), GRAIN, [&](Index begin, Index end, int worker) {
-			for (Index i = begin; i < end; ++i) {
-				const auto at = static_cast<std::size_t>(i);
-				variances[at] = heights[static_cast<std::size_t>(worker)].fit(sample[every * at]);
+		static_cast<Index>(numbers.size()), GRAIN, [&](Index begin, Index end, int worker) {
+			for (Index k = begin; k < end; ++k) {
+				const std::size_t i = numbers[at(k)];
+				variances[i] = heights[static_cast<std::size_t>(worker)].fit(sample[i]);
 			}
 		});
 	return variances;
-}
-
-/// Of whole rings around vertices: the narrow ones, and two wider.
-using VariancesByRings = std::array<std::vector<Variance>, 3>;
-
-// The share of the noise in what the narrow rings leave, the rest being detail.
-double share_of_noise(const VariancesByRings& variances)
-{
-	double sum = 0;
-	for (const Quantile& wanted : GROWING) {
-		std::array<double, 3> squares;
-		for (std::size_t k = 0; k < squares.size(); ++k) {
-			const double deviation = level(variances[k], wanted);
-			squares[k] = deviation * deviation;
-		}
-		const double growth = squares[1] - GROWTH_OF_NOISE * squares[0];
-		if (!(growth > 0 && squares[0] > 0)) {
-			sum += 1;
-			continue;
-		}
-		const double factor = std::max(GROWTH_OF_DETAIL, (squares[2] - squares[1]) / growth);
-		sum += std::max(0.0, 1 - growth / (factor - 1) / squares[0]);
-	}
-	return sum / static_cast<double>(GROWING.size());
-}
-
-// How far the corner of a face is from the plane of another, over the deviation that noise of one
-// everywhere would give it; negative where the other has no area or is too far off.
-double height_over_plane(const std::vector<Point>& positions, const Face& plane, Index corner)
-{
-	const Point& a = positions[static_cast<std::size_t>(plane[0])];
-	const Point ab = positions[static_cast<std::size_t>(plane[1])] - a;
-	const Point ac = positions[static_cast<std::size_t>(plane[2])] - a;
-	const Point to = positions[static_cast<std::size_t>(corner)] - a;
-	const Point normal = ab.cross(ac);
-	const double square = normal.squaredNorm();
-	if (!(square > 0))
-		return -1;
-	const double b = to.cross(ac).dot(normal) / square;
-	const double c = ab.cross(to).dot(normal) / square;
-	const Eigen::Vector3d shares(1 - b - c, b, c);
-	if (!(shares.lpNorm<1>() < FAR_OFF))
-		return -1;
-	return std::abs(to.dot(normal)) / std::sqrt(square * (1 + shares.squaredNorm()));
-}
-
-// The level that faces nearly in a plane with their neighbours allow; infinite where there are no
-// neighbours.
-double level_in_plane(
-	const Workspace& workspace,
-	const std::vector<Point>& positions,
-	const std::vector<Index>& sample)
-{
-	// The corners of a face that follow the vertex: the last one first, to look faces up by.
-	struct Spoke {
-		Index last;
-		Index next;
-		Index face;
-	};
-	std::vector<Spoke> spokes;
-	std::vector<double> heights;
-	for (const Index vertex : sample) {
-		spokes.clear();
-		const Index* const end = workspace.vertex_faces.end(vertex);
-		for (const Index* it = workspace.vertex_faces.begin(vertex); it != end; ++it) {
-			const Face& face = workspace.mesh.faces[static_cast<std::size_t>(*it)];
-			const auto own = std::find(face.begin(), face.end(), vertex) - face.begin();
-			const auto after = [&](std::ptrdiff_t k) {
-				return face[static_cast<std::size_t>((own + k) % 3)];
-			};
-			spokes.push_back({after(2), after(1), *it});
-		}
-		std::sort(spokes.begin(), spokes.end(), [](const Spoke& a, const Spoke& b) {
-			return a.last != b.last ? a.last < b.last : a.face < b.face;
-		});
-		for (const Spoke& spoke : spokes) {
-			// The face across the edge to the next corner has that one as its last.
-			const auto across = std::lower_bound(
-				spokes.begin(), spokes.end(), spoke.next, [](const Spoke& other, Index corner) {
-					return other.last < corner;
-				});
-			if (across == spokes.end() || across->last != spoke.next)
-				continue;
-			const Face& face = workspace.mesh.faces[static_cast<std::size_t>(spoke.face)];
-			const double height = height_over_plane(positions, face, across->next);
-			if (height >= 0)
-				heights.push_back(height);
-		}
-	}
-	if (heights.empty())
-		return std::numeric_limits<double>::infinity();
-	return quantile(heights, IN_PLANE.share) / IN_PLANE.normal;
-}
-
-// The level of whole rings, or that of similar faces where it shows edges in the first; in edge
-// lengths.
-double level_beside_edges(double whole, double similar, double length)
-{
-	const double without = similar / SIMILAR_LEVEL;
-	if (!(without > 0 && without < whole))
-		return whole / length;
-	const double share = way_between(SIMILAR_NEVER, SIMILAR_TO, without / length);
-	return (whole + share * (without - whole)) / length;
 }
 
 } // namespace
@@ -430,34 +257,37 @@ double level_beside_edges(double whole, double similar, double length)
 NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions)
 {
 	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
-	const std::vector<Index> sample = sample_vertices(workspace, positions, SAMPLES);
+	NoiseSample read;
+	read.vertices = sample_vertices(workspace, positions, SAMPLES);
+	const std::vector<Index>& sample = read.vertices;
 	std::vector<LocalHeights> heights(
 		static_cast<std::size_t>(workspace.execution.threads()),
 		LocalHeights(workspace, positions, smooth));
-	// Calls visit(local, i) for every so-manieth of the sample, where there is a fit.
-	const auto fit_each = [&](std::size_t count, std::size_t every, int rings, auto visit) {
+	// Fits polynomials over so many rings at the vertices with these numbers in the sample, and
+	// calls visit(local, i) where there is a fit.
+	const auto fit_each = [&](const std::vector<std::size_t>& numbers, int rings, auto visit) {
 		workspace.execution.parallel_for(
-			static_cast<Index>(count), GRAIN, [&](Index begin, Index end, int worker) {
+			static_cast<Index>(numbers.size()), GRAIN, [&](Index begin, Index end, int worker) {
 				LocalHeights& local = heights[static_cast<std::size_t>(worker)];
-				for (Index i = begin; i < end; ++i) {
-					const auto at = static_cast<std::size_t>(i);
-					if (local.fit(sample[every * at], rings))
-						visit(local, at);
+				for (Index k = begin; k < end; ++k) {
+					if (local.fit(sample[numbers[at(k)]], rings))
+						visit(local, numbers[at(k)]);
 				}
 			});
 	};
-	VariancesByRings variances;
-	variances[0].resize(sample.size());
-	fit_each(sample.size(), 1, RINGS, [&](const LocalHeights& local, std::size_t i) {
-		variances[0][i] = {local.variance(), local.free()};
-	});
-	const std::size_t every = std::max<std::size_t>(1, sample.size() / WIDE_SAMPLES);
-	const std::size_t wide = sample.size() / every;
-	std::vector<double> ratios(wide, -1);
-	for (std::size_t k = 1; k < variances.size(); ++k) {
-		variances[k].resize(wide);
+	std::vector<double> areas;
+	areas.reserve(sample.size());
+	for (const Index i : sample)
+		areas.push_back(area_around(workspace, positions, i));
+	const std::vector<std::size_t> all =
+		subsample_by_value(areas, static_cast<Index>(sample.size()));
+	const std::vector<std::size_t> few = subsample_by_value(areas, WIDE_SAMPLES);
+	VariancesByRings& variances = read.whole;
+	std::vector<double> ratios(sample.size(), -1);
+	for (std::size_t k = 0; k < variances.size(); ++k) {
+		variances[k].resize(sample.size());
 		const int rings = RINGS + static_cast<int>(k);
-		fit_each(wide, every, rings, [&](LocalHeights& local, std::size_t i) {
+		fit_each(k == 0 ? all : few, rings, [&](LocalHeights& local, std::size_t i) {
 			variances[k][i] = {local.variance(), local.free()};
 			if (rings == WIDE_RINGS)
 				ratios[i] = local.median_ratio();
@@ -466,19 +296,19 @@ NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<
 	ratios.erase(std::remove(ratios.begin(), ratios.end(), -1), ratios.end());
 	NoiseLevels result;
 	if (!ratios.empty())
-		result.median_ratio = quantile(ratios, 0.5);
+		read.median_ratio = quantile(ratios, 0.5);
+	result.median_ratio = read.median_ratio;
 	const std::vector<double> triangles = triangle_heights(workspace, smooth, sample);
 	const double least = least_steady_height(triangles, variances[0]);
-	for (std::size_t k = 0; k < variances.size(); ++k)
-		leave_out_lower(triangles, k == 0 ? 1 : every, least, variances[k]);
-	const double flat = level(variances[0], FLAT);
+	for (std::vector<ResidualVariance>& of_rings : variances)
+		leave_out_lower(triangles, least, of_rings);
+	const double flat = level_of(variances[0], FLAT);
 	const double length = clean_edge_length(workspace, positions, smooth, flat);
 	if (length > 0) {
-		const std::size_t seldom = std::max<std::size_t>(1, sample.size() / SIMILAR_SAMPLES);
-		std::vector<Variance> similar =
-			similar_variances(workspace, positions, smooth, sample, seldom);
-		leave_out_lower(triangles, seldom, least, similar);
-		const double without_edges = level(similar, SIMILAR_FLAT);
+		read.similar = similar_variances(
+			workspace, positions, smooth, sample, subsample_by_value(areas, SIMILAR_SAMPLES));
+		leave_out_lower(triangles, least, read.similar);
+		const double without_edges = level_of(read.similar, SIMILAR_FLAT);
 		result.rough = level_beside_edges(flat, without_edges, length);
 		result.flat = result.rough;
 		const double share = way_between(EDGES, NO_EDGES, without_edges / flat);
@@ -486,9 +316,10 @@ NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<
 			const double white = std::sqrt(share_of_noise(variances)) * flat / length;
 			result.flat -= share * std::max(0.0, result.rough - white);
 		}
-		const double in_plane = level_in_plane(workspace, positions, sample) / length;
-		result.drawn = way_between(MEASURED, DRAWN, in_plane / result.flat);
-		result.ordinary = level(variances[0], ORDINARY) / length;
+		result.drawn = share_drawn(workspace, positions, sample, result.flat * length);
+		read.edge_length = length;
+		result.uneven = find_uneven_noise(workspace, positions, smooth, read);
+		result.ordinary = level_of(variances[0], ORDINARY) / length;
 	}
 	return result;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "uneven_noise.h"
 #include "workspace.h"
 
 #include <vector>
@@ -38,6 +39,8 @@ struct NoiseLevels {
 	/// Median ratio of the residuals of wide polynomials (see LocalHeights): 1 where the noise is
 	/// Gaussian, 0.8 where its directions are random, two thirds where it is impulsive.
 	double median_ratio = 1;
+	/// Where the noise differs from place to place.
+	UnevenNoise uneven = {};
 };
 NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 namespace orthopoly {
 
@@ -34,6 +35,25 @@ std::uint64_t dice_of(double value, double scale)
 	return bits ^ bits >> 32U;
 }
 
+// Whether so many of a number of items may be one in so many by dice.
+bool is_by_dice(std::size_t found, std::size_t count, Index every)
+{
+	const double expected = static_cast<double>(count) / every;
+	const double off = std::abs(static_cast<double>(found) - expected);
+	return off <= std::max(MOST_OFF * expected, DEVIATIONS_OFF * std::sqrt(expected));
+}
+
+// One in so many numbers, by dice.
+std::vector<std::size_t> numbers_by_dice(std::size_t count, Index every)
+{
+	std::vector<std::size_t> numbers;
+	for (std::size_t k = 0; k < count; ++k) {
+		if (dice_of(static_cast<double>(k), 1) % static_cast<std::uint64_t>(every) == 0)
+			numbers.push_back(k);
+	}
+	return numbers;
+}
+
 } // namespace
 
 std::vector<Index> sample_by_value(const std::vector<double>& values, Index wanted)
@@ -59,16 +79,29 @@ std::vector<Index> sample_by_value(const std::vector<double>& values, Index want
 		if (digits < LARGEST_DIGITS && static_cast<std::int64_t>(digits) % every == 0)
 			sample.push_back(i);
 	}
-	const double expected = static_cast<double>(count) / every;
-	const double off = std::abs(static_cast<double>(sample.size()) - expected);
-	if (off <= std::max(MOST_OFF * expected, DEVIATIONS_OFF * std::sqrt(expected)))
+	if (is_by_dice(sample.size(), positive.size(), every))
 		return sample;
 	sample.clear();
-	for (Index k = 0; k < count; ++k) {
-		if (dice_of(k, 1) % static_cast<std::uint64_t>(every) == 0)
-			sample.push_back(positive[static_cast<std::size_t>(k)]);
-	}
+	for (const std::size_t k : numbers_by_dice(positive.size(), every))
+		sample.push_back(positive[k]);
 	return sample;
+}
+
+std::vector<std::size_t> subsample_by_value(const std::vector<double>& values, Index wanted)
+{
+	const std::size_t count = values.size();
+	const Index every = wanted > 0 ? static_cast<Index>(count) / wanted : 0;
+	std::vector<std::size_t> numbers(count);
+	std::iota(numbers.begin(), numbers.end(), std::size_t(0));
+	if (every <= 1)
+		return numbers;
+	const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+	const double scale = scale_of(sum / static_cast<double>(count));
+	const auto is_left_out = [&](std::size_t k) {
+		return dice_of(values[k], scale) % static_cast<std::uint64_t>(every) != 0;
+	};
+	numbers.erase(std::remove_if(numbers.begin(), numbers.end(), is_left_out), numbers.end());
+	return is_by_dice(numbers.size(), count, every) ? numbers : numbers_by_dice(count, every);
 }
 
 std::vector<std::uint8_t>

@@ -17,6 +17,11 @@ namespace orthopoly {
 /// @param values one an item; those that are not positive are left out
 std::vector<Index> sample_by_value(const std::vector<double>& values, Index wanted);
 
+/// Numbers of about `wanted` of the items of a sample, or all where there are not many more: by
+/// other digits of their values than those that `sample_by_value` took them for.
+/// @param values one an item of the sample; positive
+std::vector<std::size_t> subsample_by_value(const std::vector<double>& values, Index wanted);
+
 /// #F flags of about one face in so many, everywhere alike: one in so many of any face and those
 /// that share a vertex with it. By the digits of the faces' values too; all faces for one in one,
 /// and where values are all alike.

@@ -37,11 +37,15 @@ NOT_RENEWED = 0
 
 OWN_MESHES = ["cube", "sphere", "torus", "part", "thin_plate", "height_field"]
 CGAL_MESHES = ["fandisk", "anchor_dense", "blade", "bones", "elephant", "armadillo", "bear", "knot2"]
-# Kind and sigma in mean edge lengths. Random is Table 2's, normal that of the usual test sets.
+# Kind and sigma in mean edge lengths. Random is Table 2's, normal that of the usual test sets. Uneven
+# is none at one end of the mesh and twice sigma at the other, view along one axis, as scanners have it.
 NOISES = [
 	("normal", 0.1), ("normal", 0.2), ("normal", 0.3), ("normal", 0.6),
 	("random", 0.2), ("random", 0.4), ("isotropic", 0.3), ("impulsive", 0.5),
+	("uneven", 0.2), ("view", 0.3),
 ]
+# What `orthopoly noise` makes them of.
+DIRECTIONS = {"impulsive": "random", "uneven": "normal", "view": "isotropic"}
 # The share of the vertices that impulsive noise moves.
 IMPULSIVE_SHARE = 0.2
 
@@ -160,13 +164,34 @@ def of_scan(row):
 	return row["group"].split("/")[-1] == SCAN_FOLDER
 
 
+def keep_part_of_noise(case, target):
+	"""Makes even noise uneven."""
+	import numpy as np
+	import pymeshlab
+
+	clean, faces = load(case.truth)
+	noise = load(target)[0] - clean
+	if case.kind == "view":
+		noise[:, :2] = 0
+	else:
+		extent = np.ptp(clean, axis=0)
+		along = clean[:, np.argmax(extent)]
+		noise *= 2 * ((along - along.min()) / extent.max())[:, None]
+	with LOADING:
+		meshes = pymeshlab.MeshSet()
+		meshes.add_mesh(pymeshlab.Mesh(clean + noise, faces))
+		meshes.save_current_mesh(str(target))
+
+
 def make_noise(case, target):
-	kind = ["--direction", case.kind]
+	kind = ["--direction", DIRECTIONS.get(case.kind, case.kind)]
 	if case.kind == "impulsive":
-		kind = ["--direction", "random", "--impulsive-share", IMPULSIVE_SHARE]
+		kind += ["--impulsive-share", IMPULSIVE_SHARE]
 	# Meshes get draws of their own even with one seed.
 	seed = int(hashlib.sha256(f"{case.model} {case.seed}".encode()).hexdigest()[:7], 16)
 	tools.orthopoly("noise", case.truth, target, "--sigma", case.sigma, *kind, "--seed", seed)
+	if case.kind in ("uneven", "view"):
+		keep_part_of_noise(case, target)
 
 
 def figures(report):

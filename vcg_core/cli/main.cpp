@@ -182,9 +182,14 @@ void print_result(const TriangleMesh& mesh, const DenoiseResult& result, double 
 					  "no noise worth removing, positions left as they are" :
 					  "denoised")
 			  << " in " << seconds << " s\n";
-	if (result.resolved.method == Method::Adaptive)
+	if (result.resolved.method == Method::Adaptive) {
 		std::cout << "  estimated noise along the normal: " << result.estimated_noise
-				  << " mean edge lengths\n";
+				  << " mean edge lengths";
+		if (result.estimated_noise_low != result.estimated_noise_high)
+			std::cout << ", uneven: from " << result.estimated_noise_low << " to "
+					  << result.estimated_noise_high << " in most places";
+		std::cout << "\n";
+	}
 	std::cout << "  parameters:";
 	for (const Parameter<DenoiseOptions>& parameter : denoise_parameters())
 		std::cout << " " << parameter.name << "="
@@ -255,8 +260,11 @@ int run_denoise(const DenoiseArguments& arguments)
 			{"max_displacement", result.max_displacement},
 		};
 		// The paper's method estimates nothing.
-		if (options.method == Method::Adaptive)
+		if (options.method == Method::Adaptive) {
 			json["estimated_noise"] = result.estimated_noise;
+			json["estimated_noise_low"] = result.estimated_noise_low;
+			json["estimated_noise_high"] = result.estimated_noise_high;
+		}
 		if (reference) {
 			json["noisy"] = to_json(*before);
 			json["result"] = to_json(*after);

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "uneven_noise.h"
+
+#include "measures.h"
+#include "method_support.h"
+#include "noise_level.h"
+#include "recipes.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+using namespace orthopoly;
+
+namespace {
+
+UnevenNoise found_in(const TriangleMesh& mesh, int threads = 1)
+{
+	const StepFixture f(mesh, threads);
+	return estimate_noise_levels(f.workspace, mesh.positions).uneven;
+}
+
+DenoiseResult run(const TriangleMesh& mesh)
+{
+	DenoiseOptions options;
+	options.threads = 1;
+	return denoised(mesh, options);
+}
+
+double root_mean_square(const std::vector<double>& values)
+{
+	const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+	return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+// From nothing at one end of the torus to twice as much at the other.
+double ramp(const Point& p)
+{
+	return 1 + p.x() / 1.4;
+}
+
+// Of one half only.
+double half(const Point& p)
+{
+	return p.x() > 0 ? 1 : 0;
+}
+
+// Mean angle to the truth of the faces on one side of x = 0, degrees.
+double
+mean_angle_beyond(const std::vector<Point>& positions, const TriangleMesh& truth, double side)
+{
+	const FaceGeometry expected = face_geometry(truth.positions, truth.faces);
+	const FaceGeometry found = face_geometry(positions, truth.faces);
+	double sum = 0;
+	int count = 0;
+	for (std::size_t i = 0; i < truth.faces.size(); ++i) {
+		if (!(side * expected.centroids[i].x() > 0))
+			continue;
+		const double cosine = expected.normals[i].dot(found.normals[i]);
+		sum += std::acos(std::max(-1.0, std::min(1.0, cosine)));
+		++count;
+	}
+	return sum / count * 180 / std::acos(-1.0);
+}
+
+} // namespace
+
+TEST_CASE("Even noise is taken for even", "[uneven_noise]")
+{
+	const std::string name = GENERATE("cube", "sphere", "torus", "part", "height_field");
+	const auto direction = GENERATE(NoiseDirection::Normal, NoiseDirection::Isotropic);
+	const TriangleMesh clean = find_recipe(name).make_default();
+	for (const double sigma : {0.0, 0.05, 0.2, 0.5}) {
+		CAPTURE(name, static_cast<int>(direction), sigma);
+		const UnevenNoise found = found_in(noisy(clean, sigma, direction));
+		CHECK(found.certainty == 0);
+		CHECK(found.factors.empty());
+	}
+}
+
+TEST_CASE("Noise that grows along the mesh is followed", "[uneven_noise]")
+{
+	const TriangleMesh clean = make_torus(8000);
+	for (const double sigma : {0.1, 0.3}) {
+		CAPTURE(sigma);
+		const UnevenNoise found = found_in(unevenly_noisy(clean, sigma, ramp));
+		REQUIRE(found.certainty == 1);
+		REQUIRE(found.factors.size() == clean.positions.size());
+		CHECK(root_mean_square(found.factors) == Approx(1).margin(0.02));
+		std::vector<double> shares;
+		for (const Point& p : clean.positions)
+			shares.push_back(ramp(p));
+		CHECK(found.level == Approx(sigma * root_mean_square(shares)).epsilon(0.12));
+		double error = 0;
+		for (std::size_t i = 0; i < shares.size(); ++i)
+			error += std::abs(found.level * found.factors[i] - sigma * shares[i]);
+		CHECK(error / static_cast<double>(shares.size()) < 0.15 * sigma);
+	}
+}
+
+TEST_CASE("A mesh half of which is clean has uneven noise", "[uneven_noise]")
+{
+	for (const TriangleMesh& clean : {make_torus(8000), make_part(12000)}) {
+		const UnevenNoise found = found_in(unevenly_noisy(clean, 0.2, half));
+		REQUIRE(found.certainty == 1);
+		CHECK(found.level == Approx(0.2 / std::sqrt(2)).epsilon(0.12));
+	}
+}
+
+TEST_CASE("Noise along one axis is told by the way that faces are turned", "[uneven_noise]")
+{
+	// The sides of a cube are beside each other; along z two of them are noisy.
+	const TriangleMesh clean = make_cube(12000);
+	TriangleMesh mesh = clean;
+	const std::vector<Point> random = noisy(clean, 0.2, NoiseDirection::Isotropic).positions;
+	for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+		mesh.positions[i].z() = random[i].z();
+	const UnevenNoise found = found_in(mesh);
+	REQUIRE(found.certainty == 1);
+	std::vector<double> tops;
+	std::vector<double> sides;
+	for (std::size_t i = 0; i < clean.positions.size(); ++i) {
+		const double height = std::abs(clean.positions[i].z());
+		const double across = clean.positions[i].head<2>().lpNorm<Eigen::Infinity>();
+		if (height > 0.99 && across < 0.8)
+			tops.push_back(found.level * found.factors[i]);
+		else if (across > 0.99 && height < 0.8)
+			sides.push_back(found.level * found.factors[i]);
+	}
+	REQUIRE(tops.size() > 100);
+	REQUIRE(sides.size() > 100);
+	CHECK(root_mean_square(tops) == Approx(0.2).epsilon(0.15));
+	CHECK(root_mean_square(sides) < 0.05);
+}
+
+TEST_CASE("Components have levels of their own, however near", "[uneven_noise]")
+{
+	// Two squares that face the same way, one right above the other.
+	TriangleMesh mesh = noisy(make_flat_grid(45), 0.05);
+	const std::size_t half = mesh.positions.size();
+	const TriangleMesh upper = noisy(make_flat_grid(45), 0.3);
+	for (const Point& p : upper.positions)
+		mesh.positions.push_back(p + Point(0, 0, 0.001));
+	for (const Face& face : upper.faces) {
+		const auto n = static_cast<Index>(half);
+		mesh.faces.push_back({face[0] + n, face[1] + n, face[2] + n});
+	}
+	const UnevenNoise found = found_in(mesh);
+	REQUIRE(found.certainty == 1);
+	const auto middle = static_cast<std::ptrdiff_t>(half);
+	const std::vector<double> lower_factors(found.factors.begin(), found.factors.begin() + middle);
+	const std::vector<double> upper_factors(found.factors.begin() + middle, found.factors.end());
+	CHECK(found.level * root_mean_square(lower_factors) == Approx(0.05).epsilon(0.15));
+	CHECK(found.level * root_mean_square(upper_factors) == Approx(0.3).epsilon(0.15));
+}
+
+TEST_CASE("Detail in one place is not uneven noise", "[uneven_noise]")
+{
+	// Half of the square has waves of five edges, which noise has not.
+	TriangleMesh mesh = make_flat_grid(80);
+	const double edge = mean_edge_length(mesh.positions, mesh.faces);
+	for (Point& p : mesh.positions) {
+		const double wave = 2 * std::acos(-1.0) / (5 * edge);
+		if (p.x() > 0.5)
+			p.z() = 0.3 * edge * std::sin(wave * p.x()) * std::sin(wave * p.y());
+	}
+	CHECK(found_in(mesh).certainty == 0);
+	CHECK(found_in(noisy(mesh, 0.05)).certainty == 0);
+}
+
+TEST_CASE("A few vertices do not say that noise is uneven", "[uneven_noise]")
+{
+	CHECK(found_in(unevenly_noisy(make_torus(1000), 0.2, ramp)).certainty == 0);
+}
+
+TEST_CASE("Uneven noise reads the same bits on any number of threads", "[uneven_noise][parallel]")
+{
+	const TriangleMesh mesh = unevenly_noisy(make_torus(6000), 0.2, ramp);
+	const UnevenNoise one = found_in(mesh, 1);
+	REQUIRE(one.certainty > 0);
+	for (const int threads : {2, 3}) {
+		const UnevenNoise several = found_in(mesh, threads);
+		CHECK(several.level == one.level);
+		CHECK(several.factors == one.factors);
+	}
+}
+
+TEST_CASE("Uneven noise is removed everywhere", "[uneven_noise]")
+{
+	const TriangleMesh clean = make_torus(8000);
+	for (const double sigma : {0.1, 0.3}) {
+		CAPTURE(sigma);
+		const TriangleMesh mesh = unevenly_noisy(clean, sigma, ramp);
+		const DenoiseResult result = run(mesh);
+		const ErrorMeasures before = measure(mesh, clean);
+		const ErrorMeasures after = measure(with_positions(mesh, result.positions), clean);
+		CHECK(after.mean_angle < 0.12 * before.mean_angle);
+		CHECK(after.msae < 0.02 * before.msae);
+		CHECK(after.vertex_error < 0.35 * before.vertex_error);
+		CHECK(after.folded_faces == 0);
+		CHECK(result.estimated_noise_low < 0.6 * result.estimated_noise);
+		CHECK(result.estimated_noise_high > 1.2 * result.estimated_noise);
+	}
+}
+
+TEST_CASE("The clean half of a noisy mesh stays clean", "[uneven_noise]")
+{
+	const TriangleMesh clean = make_part(12000);
+	const TriangleMesh mesh = unevenly_noisy(clean, 0.2, half);
+	const std::vector<Point> found = run(mesh).positions;
+	CHECK(mean_angle_beyond(mesh.positions, clean, 1) > 15);
+	CHECK(mean_angle_beyond(found, clean, 1) < 3);
+	CHECK(mean_angle_beyond(found, clean, -1) < 0.5);
+}
+
+TEST_CASE("Noise along one axis is removed where it shows", "[uneven_noise]")
+{
+	const TriangleMesh clean = make_cube(12000);
+	TriangleMesh mesh = clean;
+	const std::vector<Point> random = noisy(clean, 0.2, NoiseDirection::Isotropic).positions;
+	for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+		mesh.positions[i].z() = random[i].z();
+	const DenoiseResult result = run(mesh);
+	CHECK(result.estimated_noise == Approx(0.2 / std::sqrt(3)).epsilon(0.15));
+	const ErrorMeasures after = measure(with_positions(mesh, result.positions), clean);
+	CHECK(after.mean_angle < 0.2 * measure(mesh, clean).mean_angle);
+}
+
+TEST_CASE("Even noise is told as one level", "[uneven_noise]")
+{
+	const DenoiseResult result = run(noisy(make_torus(4000), 0.2));
+	CHECK(result.estimated_noise_low == result.estimated_noise);
+	CHECK(result.estimated_noise_high == result.estimated_noise);
+}
+
+TEST_CASE("Numbering and placing change nothing where noise is uneven", "[uneven_noise]")
+{
+	const TriangleMesh mesh = unevenly_noisy(make_torus(4000), 0.2, ramp);
+	const DenoiseResult here = run(mesh);
+	REQUIRE(here.estimated_noise_low < here.estimated_noise_high);
+	const double size = bounding_box_diagonal(mesh.positions);
+
+	const Renumbered renumbered(mesh);
+	const DenoiseResult other = run(renumbered.mesh);
+	CHECK(other.estimated_noise == Approx(here.estimated_noise).epsilon(1e-9));
+	CHECK(
+		largest_distance(renumbered.in_given_order(other.positions), here.positions) < 1e-9 * size);
+
+	const Eigen::Matrix3d rotation = some_rotation();
+	const auto turn = [&](const Point& p) { return Point(1e3 * (rotation * p)); };
+	const DenoiseResult turned = run(with_positions(mesh, each(mesh.positions, turn)));
+	CHECK(turned.estimated_noise == Approx(here.estimated_noise).epsilon(1e-9));
+	CHECK(largest_distance(turned.positions, each(here.positions, turn)) < 1e3 * 1e-9 * size);
+}

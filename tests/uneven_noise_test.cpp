@@ -47,6 +47,15 @@ double half(const Point& p)
 	return p.x() > 0 ? 1 : 0;
 }
 
+// The mesh with noise along one axis only.
+TriangleMesh noisy_along_z(TriangleMesh mesh, double sigma)
+{
+	const TriangleMesh random = noisy(mesh, sigma, NoiseDirection::Isotropic);
+	for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+		mesh.positions[i].z() = random.positions[i].z();
+	return mesh;
+}
+
 // Mean angle to the truth of the faces on one side of x = 0, degrees.
 double
 mean_angle_beyond(const std::vector<Point>& positions, const TriangleMesh& truth, double side)
@@ -113,11 +122,7 @@ TEST_CASE("Noise along one axis is told by the way that faces are turned", "[une
 {
 	// The sides of a cube are beside each other; along z two of them are noisy.
 	const TriangleMesh clean = make_cube(12000);
-	TriangleMesh mesh = clean;
-	const std::vector<Point> random = noisy(clean, 0.2, NoiseDirection::Isotropic).positions;
-	for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-		mesh.positions[i].z() = random[i].z();
-	const UnevenNoise found = found_in(mesh);
+	const UnevenNoise found = found_in(noisy_along_z(clean, 0.2));
 	REQUIRE(found.certainty == 1);
 	std::vector<double> tops;
 	std::vector<double> sides;
@@ -218,10 +223,7 @@ TEST_CASE("The clean half of a noisy mesh stays clean", "[uneven_noise]")
 TEST_CASE("Noise along one axis is removed where it shows", "[uneven_noise]")
 {
 	const TriangleMesh clean = make_cube(12000);
-	TriangleMesh mesh = clean;
-	const std::vector<Point> random = noisy(clean, 0.2, NoiseDirection::Isotropic).positions;
-	for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-		mesh.positions[i].z() = random[i].z();
+	const TriangleMesh mesh = noisy_along_z(clean, 0.2);
 	const DenoiseResult result = run(mesh);
 	CHECK(result.estimated_noise == Approx(0.2 / std::sqrt(3)).epsilon(0.15));
 	const ErrorMeasures after = measure(with_positions(mesh, result.positions), clean);

@@ -327,7 +327,8 @@ NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions)
 {
 	const NoiseLevels levels = estimate_noise_levels(workspace, positions);
-	return (1 - levels.drawn) * levels.flat;
+	const double even = (1 - levels.drawn) * levels.flat;
+	return even + levels.uneven.certainty * (levels.uneven.level - even);
 }
 
 } // namespace orthopoly

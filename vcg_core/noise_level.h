@@ -21,7 +21,8 @@ constexpr double LEAST_NOISE = 0.025;
 /// for that, so that polynomials over the similar faces alone leave less, the level is what these
 /// leave. Where polynomials over more rings leave more, the growth tells how much of it is detail
 /// as small as the triangles, which is no noise. Zero where no vertex has neighbours enough, and
-/// where more pairs of faces lie in a plane than noise would leave. O(#V) time.
+/// where more pairs of faces lie in a plane than noise would leave. Where the noise differs from
+/// place to place, the root mean square (UnevenNoise). O(#V) time.
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions);
 
 /// The same in several ways, and what kind of noise it is.

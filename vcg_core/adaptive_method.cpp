@@ -454,11 +454,10 @@ private:
 		if (plan_.correlation == 1)
 			return;
 		bound_drift(measured, PREFILTER_BOUND);
-		for (int pair = 0; pair < UNFOLDING_PAIRS; ++pair) {
-			const FoldCriterion criterion {FOLD_COSINE, FOLD_HEIGHT * deviations_.largest()};
+		const FoldCriterion criterion {FOLD_COSINE, FOLD_HEIGHT * deviations_.largest()};
+		for (int pair = 0; pair < UNFOLDING_PAIRS; ++pair)
 			taubin_smooth(
 				workspace_, 1, positions_, folded_vertices(workspace_, positions_, criterion));
-		}
 		bound_drift(measured, UNFOLDING_BOUND);
 	}
 

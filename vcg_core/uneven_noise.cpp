@@ -47,8 +47,7 @@ constexpr double WHITE = 0.85;
 
 // Outliers are here and there, and not evenly so: the median ratio of the residuals up to which
 // they make the noise (it is 0.66 at most where half of the vertices are some), and from which they
-// do not (0.83 at least where half of a mesh is clean, and 0.9 of that where noise has any
-// direction).
+// do not (0.83 at least where half of a mesh is clean).
 constexpr double OUTLYING = 0.67;
 constexpr double INLYING = 0.75;
 
@@ -97,14 +96,17 @@ public:
 				{smooth[at(sample.vertices[k])], normals_[k], components_[at(sample.vertices[k])]});
 	}
 
-	/// Reads the levels at one place in so many.
+	/// Reads the levels at one place in so many, where that has not been done.
 	void read(std::size_t one_in)
 	{
 		const auto count = static_cast<Index>((places_.size() + one_in - 1) / one_in);
 		workspace_.execution.parallel_for(count, 1, [&](Index begin, Index end, int) {
 			std::vector<Candidate> nearest;
-			for (Index k = begin; k < end; ++k)
-				read(places_[one_in * at(k)], nearest);
+			for (Index k = begin; k < end; ++k) {
+				Place& place = places_[one_in * at(k)];
+				if (place.level < 0)
+					read(place, nearest);
+			}
 		});
 	}
 

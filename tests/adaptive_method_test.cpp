@@ -6,6 +6,7 @@
 #include "noise_level.h"
 #include "prefilter.h"
 #include "recipes.h"
+#include "volume_support.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -508,6 +509,34 @@ TEST_CASE(
 		CHECK(same_bits(many.positions, one.positions));
 		CHECK(many.estimated_noise == one.estimated_noise);
 	}
+}
+
+TEST_CASE("The noise of volumes is found and treated as such", "[adaptive_method]")
+{
+	const double radius = 0.7;
+	const auto truth_of = [&](const TriangleMesh& mesh) {
+		return with_positions(mesh, each(mesh.positions, [&](const Point& p) {
+								  return Point(radius * p.normalized());
+							  }));
+	};
+	const auto angle_after = [&](const TriangleMesh& mesh, NoiseType type) {
+		DenoiseOptions options;
+		options.threads = 1;
+		options.noise_type = type;
+		const DenoiseResult result = denoised(mesh, options);
+		return measure(with_positions(mesh, result.positions), truth_of(mesh)).mean_angle;
+	};
+	for (const double noise : {0.2, 0.4}) {
+		CAPTURE(noise);
+		const TriangleMesh mesh = ball_of_volume(radius, 50, noise);
+		CHECK(run(mesh).resolved.noise_type == NoiseType::Scanner);
+		const double found = angle_after(mesh, NoiseType::Automatic);
+		CHECK(found < 0.5 * angle_after(mesh, NoiseType::White));
+		CHECK(found < 0.3 * measure(mesh, truth_of(mesh)).mean_angle);
+	}
+	const TriangleMesh clean = ball_of_volume(radius, 50, 0);
+	CHECK(run(clean).resolved.noise_type == NoiseType::White);
+	CHECK(same_bits(run(clean).positions, clean.positions));
 }
 
 TEST_CASE("Scanner noise is filtered at a level of zero too", "[adaptive_method]")

@@ -3,6 +3,7 @@
 
 #include "method_support.h"
 #include "recipes.h"
+#include "volume_support.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -73,7 +74,36 @@ TEST_CASE("The noise of a depth camera is found", "[noise_correlation]")
 		// The longest waves are taken for the surface.
 		CHECK(found.level > 0.5 * sigma);
 		CHECK(found.level < sigma);
+		CHECK(found.narrow_level < found.level);
 	}
+}
+
+TEST_CASE("The noise of a volume is found", "[noise_correlation]")
+{
+	for (const double noise : {0.2, 0.3, 0.5}) {
+		CAPTURE(noise);
+		const NoiseCorrelation found = measured(ball_of_volume(0.7, 60, noise));
+		CHECK(found.is_of_voxels() == 1);
+		CHECK(found.view_irregularity > 0.99);
+		CHECK(found.edge_correlation > 0.2);
+		CHECK(found.growth < 1.6);
+		CHECK(found.certainty() > 0.8);
+	}
+}
+
+TEST_CASE("A volume without noise of its own has none that goes together", "[noise_correlation]")
+{
+	const TriangleMesh clean = ball_of_volume(0.7, 60, 0);
+	CHECK(measured(clean).is_of_voxels() == 1);
+	CHECK(measured(clean).certainty() == 0);
+	for (const double sigma : {0.1, 0.3})
+		CHECK(measured(noisy(clean, sigma)).certainty() == 0);
+	// Bumps as small as the cubes let it.
+	const auto bumpy = [](const Point& p) {
+		const double waves = std::sin(16 * p.x()) * std::sin(16 * p.y()) * std::sin(16 * p.z());
+		return p.norm() - 0.7 + 0.04 * waves;
+	};
+	CHECK(measured(surface_of(bumpy, 60, 0)).certainty() == 0);
 }
 
 TEST_CASE("Only a single view can be a depth camera's", "[noise_correlation]")

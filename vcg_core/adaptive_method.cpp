@@ -121,16 +121,23 @@ constexpr int FACES_PER_HEIGHT_STRUCTURE = 4;
 constexpr double SPREAD = 0.0033;
 constexpr double DISAGREEMENT = 0.1;
 
-// Noise correlated over several edges: smoothing that reaches beyond the correlation, wide
-// structures of one size, and a selection that allows for each independent value being shared by
-// some twenty faces. Heights are no better known than normals then. Where it is not certain that
-// the noise is of that kind, everything lies between.
+// Noise correlated over several edges: smoothing that reaches beyond the correlation, structures
+// that may be wide but are of strictly similar directions, which are steady after it, and a
+// selection that allows for each independent value being shared by some twenty faces; by seven in
+// a volume, where noise goes together over a cube or two. Heights are no better known than normals
+// then. Where it is not certain that the noise is of that kind, everything lies between.
 constexpr double SCANNER_PAIRS = 10;
-constexpr int SCANNER_RINGS = 6;
-constexpr int SCANNER_VERTEX_ITERATIONS = 60;
-constexpr double SCANNER_THRESHOLD = 0.6;
+constexpr int SCANNER_SMALLEST_RING = 3;
+constexpr int VOXEL_SMALLEST_RING = 2;
+constexpr int SCANNER_LARGEST_RING = 8;
+constexpr double SCANNER_THRESHOLD = 0.85;
 constexpr double SCANNER_THRESHOLD_INCREMENT = 0.05;
 constexpr double SCANNER_SELECTION = 200;
+constexpr double VOXEL_SELECTION = 60;
+
+// Steps of the vertex update where that is more likely than not; plain ones, since vertices are
+// held back too little there should accelerated ones go too far.
+constexpr int SCANNER_VERTEX_ITERATIONS = 60;
 
 // Median share of what the method took that neighbours predict (see MovePredictor) from which it is
 // detail for a good part; noise alone and smooth surfaces leave up to 0.17. The rest is the noise,
@@ -214,6 +221,14 @@ int height_rings_for(double noise)
 	return noise < 0.16 ? 6 : 7;
 }
 
+// How the noise of neighbouring vertices goes together.
+struct Correlation {
+	/// How far it is taken to, 0 to 1.
+	double share = 0;
+	/// How far over the cubes of a volume only, 0 to 1.
+	double of_voxels = 0;
+};
+
 // Everything an iteration goes by.
 struct Plan {
 	/// How far the noise is taken as correlated, 0 to 1.
@@ -228,6 +243,7 @@ struct Plan {
 	/// Of the last iteration, and of those before.
 	int vertex_iterations = VERTEX_ITERATIONS;
 	int guiding_vertex_iterations = VERTEX_ITERATIONS;
+	bool accelerated = true;
 	double cos_threshold = 0;
 	double cos_threshold_increment = LEAST_INCREMENT;
 	double selection = SELECTION;
@@ -256,21 +272,27 @@ int between(int white, int scanner, double correlation)
 		between(static_cast<double>(white), static_cast<double>(scanner), correlation)));
 }
 
-Plan plan_for(const DenoiseOptions& options, double noise, double correlation)
+Plan plan_for(const DenoiseOptions& options, double noise, const Correlation& kind)
 {
 	Plan plan;
+	const double correlation = kind.share;
 	plan.noise = noise;
 	plan.correlation = correlation;
 	plan.scanner_pairs *= strength_factor(options.strength);
-	plan.vertex_iterations = between(VERTEX_ITERATIONS, SCANNER_VERTEX_ITERATIONS, correlation);
+	plan.accelerated = correlation < 0.5;
+	if (!plan.accelerated)
+		plan.vertex_iterations = SCANNER_VERTEX_ITERATIONS;
 	plan.cos_threshold = between(cos_threshold_for(noise), SCANNER_THRESHOLD, correlation);
 	plan.cos_threshold_increment =
 		between(cos_threshold_increment_for(noise), SCANNER_THRESHOLD_INCREMENT, correlation);
-	// A ratio of variances, hence by its logarithm.
-	plan.selection = SELECTION * std::pow(SCANNER_SELECTION / SELECTION, correlation);
+	// Ratios of variances, hence by their logarithms.
+	const double selection =
+		SCANNER_SELECTION * std::pow(VOXEL_SELECTION / SCANNER_SELECTION, kind.of_voxels);
+	plan.selection = SELECTION * std::pow(selection / SELECTION, correlation);
 	const Rings rings = rings_for(noise);
-	plan.rings.smallest = between(rings.smallest, SCANNER_RINGS, correlation);
-	plan.rings.largest = between(rings.largest, SCANNER_RINGS, correlation);
+	const int smallest = between(SCANNER_SMALLEST_RING, VOXEL_SMALLEST_RING, kind.of_voxels);
+	plan.rings.smallest = between(rings.smallest, smallest, correlation);
+	plan.rings.largest = between(rings.largest, SCANNER_LARGEST_RING, correlation);
 	plan.height_rings = height_rings_for(noise);
 	if (options.structure_ring) {
 		plan.height_rings =
@@ -385,10 +407,9 @@ public:
 			update.iterations = last ? plan_.vertex_iterations : plan_.guiding_vertex_iterations;
 			update.area_weights = true;
 			update.unfold_cosine = FOLD_COSINE;
-			if (plan_.correlation < 1) {
-				update.accelerated = true;
+			update.accelerated = plan_.accelerated;
+			if (plan_.correlation < 1)
 				update.rest = &start;
-			}
 			if (!paces.empty())
 				update.paces = &paces;
 			update_vertices(workspace_, normals, update, positions_);
@@ -565,7 +586,7 @@ std::optional<TakenMoves> run_at(
 	double noise,
 	const Workspace& workspace,
 	const DenoiseOptions& options,
-	double correlation,
+	const Correlation& correlation,
 	const std::vector<double>& factors,
 	DenoiseResult& result,
 	std::vector<Point>& positions)
@@ -587,7 +608,7 @@ std::optional<TakenMoves> run_at(
 void lower_and_run(
 	const Workspace& workspace,
 	const DenoiseOptions& options,
-	double correlation,
+	const Correlation& correlation,
 	const std::vector<double>& factors,
 	DenoiseResult& result,
 	std::vector<Point>& positions)
@@ -597,7 +618,7 @@ void lower_and_run(
 		return run_at(noise, workspace, options, correlation, factors, result, positions);
 	};
 	std::optional<TakenMoves> taken = run(strength * *result.resolved.noise_level);
-	if (options.noise_level || correlation > 0 || !taken || taken->predicted < DETAIL)
+	if (options.noise_level || correlation.share > 0 || !taken || taken->predicted < DETAIL)
 		return;
 	// The level is the same at any strength.
 	double& level = result.estimated_noise;
@@ -621,7 +642,7 @@ void lower_and_run(
 void repair_and_run(
 	const Workspace& workspace,
 	const DenoiseOptions& options,
-	double correlation,
+	const Correlation& correlation,
 	const OutlierRepair& outliers,
 	DenoiseResult& result,
 	std::vector<Point>& positions)
@@ -660,26 +681,33 @@ void run_adaptive_method(
 {
 	workspace.execution.begin_phase(0.05, 0.08, "estimating the noise");
 	const NoiseLevels levels = estimate_noise_levels(workspace, workspace.mesh.positions);
-	double correlation = options.noise_type == NoiseType::Scanner ? 1 : 0;
-	if (options.noise_type == NoiseType::Automatic && levels.rough >= LEAST_NOISE)
-		correlation = measure_noise_correlation(workspace, workspace.mesh.positions).certainty();
+	Correlation correlation;
+	double rough = levels.rough;
+	if (options.noise_type != NoiseType::White) {
+		const NoiseCorrelation measured =
+			measure_noise_correlation(workspace, workspace.mesh.positions);
+		const bool scanner = options.noise_type == NoiseType::Scanner;
+		correlation = {scanner ? 1 : measured.certainty(), measured.is_of_voxels()};
+		// What a polynomial over two rings follows of such noise, one over more does not.
+		rough = std::max(rough, measured.narrow_level);
+	}
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
 	UnevenNoise uneven;
-	if (correlation == 0)
+	if (correlation.share == 0)
 		uneven = levels.uneven;
 	// Beside a clean part noise looks like outliers.
 	OutlierRepair outliers;
-	if (correlation < 1 && uneven.certainty < 0.5)
+	if (correlation.share < 1 && uneven.certainty < 0.5)
 		outliers = repair_outliers(workspace, levels);
 	if (outliers.share > 0)
 		uneven = {};
 	// Noise that goes together over several edges grows with the rings as detail does.
 	const double white = outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;
-	const double even = between(white, levels.rough, correlation);
+	const double even = between(white, rough, correlation.share);
 	const double level = between(even, uneven.level, uneven.certainty);
 	result.estimated_noise = between(level, outliers.level, outliers.share);
 	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
-	result.resolved.noise_type = correlation > 0.5 ? NoiseType::Scanner : NoiseType::White;
+	result.resolved.noise_type = correlation.share > 0.5 ? NoiseType::Scanner : NoiseType::White;
 	if (outliers.share == 0)
 		lower_and_run(workspace, options, correlation, uneven.factors, result, positions);
 	else

@@ -7,15 +7,19 @@
 
 namespace orthopoly {
 
-/// What tells the noise of a depth camera, correlated over several edges, from white noise.
+/// What tells the noise of a depth camera or of a volume, correlated over several edges, from white
+/// noise.
 ///
 /// Fine detail all over a surface looks the same as correlated noise to any statistic of heights,
-/// and what takes the one away ruins the other. So five things have to come together.
+/// and what takes the one away ruins the other. So several things have to come together, and one of
+/// them is that the mesh itself shows where it comes from.
 struct NoiseCorrelation {
 	/// Root mean square deviation of the triangles' areas, as seen from the direction from which
 	/// they are most alike, over their mean: 0 for a regular grid seen from one side, 1 for a
 	/// closed surface. Noise along the view, however strong, changes nothing here.
 	double view_irregularity = 1;
+	/// How much of the mesh lies on a grid of cubes (see `orthopoly::voxel_share`).
+	double voxel_share = 0;
 	/// Of the residuals of neighbours to height polynomials, less what white noise gives; over the
 	/// flattest places, where detail contributes least. 0 where not measured.
 	double edge_correlation = 0;
@@ -25,15 +29,19 @@ struct NoiseCorrelation {
 	/// Residual deviation of wide polynomials at an ordinary place over that in the flattest ones:
 	/// 1 where the noise is all there is. 0 where not measured.
 	double unevenness = 0;
-	/// Residual deviation of wide polynomials in the flattest places, in mean edge lengths.
+	/// Residual deviations of wide and of narrow polynomials in the flattest places, in mean edge
+	/// lengths.
 	double level = 0;
+	double narrow_level = 0;
 
 	/// From 0 (white, or not to be told) to 1 (correlated), with a ramp between.
 	double certainty() const;
+	/// From 0 to 1: how surely the mesh was extracted from a volume, whatever its noise.
+	double is_of_voxels() const;
 };
 
-/// Measures the noise of a mesh. Where the view alone rules a depth camera out, the rest is left
-/// out. O(#V) time.
+/// Measures the noise of a mesh. Where it comes neither from a depth camera nor from a volume, the
+/// rest is left out. O(#V) time.
 NoiseCorrelation
 measure_noise_correlation(const Workspace& workspace, const std::vector<Point>& positions);
 

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume_support.h"
+
+#include "vcg_adapter.h"
+
+#include <algorithm>
+#include <random>
+// Without their assertions these leave paths that GCC takes for reachable.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+#include <vcg/complex/algorithms/create/marching_cubes.h>
+#include <vcg/complex/algorithms/create/mc_trivial_walker.h>
+
+namespace orthopoly {
+
+namespace {
+
+class VolumeVertex;
+class VolumeFace;
+struct VolumeTypes :
+		vcg::UsedTypes<vcg::Use<VolumeVertex>::AsVertexType, vcg::Use<VolumeFace>::AsFaceType> {};
+class VolumeVertex :
+		public vcg::Vertex<VolumeTypes, vcg::vertex::Coord3f, vcg::vertex::BitFlags> {};
+class VolumeFace : public vcg::Face<VolumeTypes, vcg::face::VertexRef, vcg::face::BitFlags> {};
+using VolumeMesh = vcg::tri::TriMesh<std::vector<VolumeVertex>, std::vector<VolumeFace>>;
+using Volume = vcg::SimpleVolume<vcg::SimpleVoxel<float>>;
+
+} // namespace
+
+TriangleMesh surface_of(
+	const std::function<double(const Point&)>& distance, int cubes, double noise, unsigned seed)
+{
+	Volume volume;
+	const int values = cubes + 1;
+	volume.Init(vcg::Point3i(values, values, values), Volume::Box3x({-1, -1, -1}, {1, 1, 1}));
+	std::mt19937 generator(seed);
+	std::normal_distribution<double> normal;
+	const double cube = 2.0 / cubes;
+	for (int z = 0; z < values; ++z) {
+		for (int y = 0; y < values; ++y) {
+			for (int x = 0; x < values; ++x) {
+				// Within a few cubes of the surface, as fused depth images have it: none elsewhere.
+				const double value = distance(cube * Point(x, y, z) - Point(1, 1, 1)) / cube;
+				const double near = std::max(-3.0, std::min(3.0, value));
+				volume.Val(x, y, z) = static_cast<float>(near + noise * normal(generator));
+			}
+		}
+	}
+	using Walker = vcg::tri::TrivialWalker<VolumeMesh, Volume>;
+	VolumeMesh mesh;
+	Walker walker;
+	vcg::tri::MarchingCubes<VolumeMesh, Walker> marching(mesh, walker);
+	walker.BuildMesh(mesh, volume, marching, 0);
+	return read_vcg_mesh(mesh).mesh;
+}
+
+TriangleMesh ball_of_volume(double radius, int cubes, double noise)
+{
+	const auto distance = [&](const Point& p) { return p.norm() - radius; };
+	return surface_of(distance, cubes, noise);
+}
+
+} // namespace orthopoly

@@ -22,7 +22,8 @@ enum class NoiseType {
 	Automatic,
 	/// Nothing: independent from vertex to vertex.
 	White,
-	/// Correlated over several edges, as depth cameras, structured-light scanners and volumes leave it.
+	/// Correlated over several edges, as depth cameras, structured-light scanners and volumes leave
+	/// it.
 	Scanner,
 };
 

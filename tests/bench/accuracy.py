@@ -39,13 +39,20 @@ OWN_MESHES = ["cube", "sphere", "torus", "part", "thin_plate", "height_field"]
 CGAL_MESHES = ["fandisk", "anchor_dense", "blade", "bones", "elephant", "armadillo", "bear", "knot2"]
 # Kind and sigma in mean edge lengths. Random is Table 2's, normal that of the usual test sets. Uneven
 # is none at one end of the mesh and twice sigma at the other, view along one axis, as scanners have it.
+# Volume is in the values of one that the mesh is extracted from anew, sigma in its cubes.
 NOISES = [
 	("normal", 0.1), ("normal", 0.2), ("normal", 0.3), ("normal", 0.6),
 	("random", 0.2), ("random", 0.4), ("isotropic", 0.3), ("impulsive", 0.5),
-	("uneven", 0.2), ("view", 0.3),
+	("uneven", 0.2), ("view", 0.3), ("volume", 0.3),
 ]
 # What `orthopoly noise` makes them of.
 DIRECTIONS = {"impulsive": "random", "uneven": "normal", "view": "isotropic"}
+# Cubes of a volume along the longest side of the mesh, those around it, and how far from the surface
+# it has distances; open meshes have no inside to measure them from.
+VOLUME_CUBES = 80
+VOLUME_MARGIN = 4
+VOLUME_BAND = 3
+OPEN_MESHES = ["height_field", "blade"]
 # The share of the vertices that impulsive noise moves.
 IMPULSIVE_SHARE = 0.2
 
@@ -115,6 +122,8 @@ def cases_of_our_own(seeds, say):
 		for path in paths:
 			cases.append(Case(group, path.stem, "clean", str(path), str(path)))
 			for kind, sigma in NOISES:
+				if kind == "volume" and path.stem in OPEN_MESHES:
+					continue
 				for seed in range(1, max(seeds, 1) + 1):
 					cases.append(Case(
 						group, path.stem, f"{kind}_{sigma:g}", str(path), None, kind, sigma, seed))
@@ -136,6 +145,15 @@ def load(path):
 		meshes.load_new_mesh(str(path))
 		mesh = meshes.current_mesh()
 		return mesh.vertex_matrix(), mesh.face_matrix()
+
+
+def save(positions, faces, path):
+	import pymeshlab
+
+	with LOADING:
+		meshes = pymeshlab.MeshSet()
+		meshes.add_mesh(pymeshlab.Mesh(positions, faces))
+		meshes.save_current_mesh(str(path))
 
 
 def noise_along_normals(truth, noisy):
@@ -167,7 +185,6 @@ def of_scan(row):
 def keep_part_of_noise(case, target):
 	"""Makes even noise uneven."""
 	import numpy as np
-	import pymeshlab
 
 	clean, faces = load(case.truth)
 	noise = load(target)[0] - clean
@@ -177,10 +194,28 @@ def keep_part_of_noise(case, target):
 		extent = np.ptp(clean, axis=0)
 		along = clean[:, np.argmax(extent)]
 		noise *= 2 * ((along - along.min()) / extent.max())[:, None]
-	with LOADING:
-		meshes = pymeshlab.MeshSet()
-		meshes.add_mesh(pymeshlab.Mesh(clean + noise, faces))
-		meshes.save_current_mesh(str(target))
+	save(clean + noise, faces, target)
+
+
+def extract_from_volume(case, seed, target):
+	"""Marching cubes of the distances from the mesh, with noise in them."""
+	import igl
+	import numpy as np
+
+	clean, faces = load(case.truth)
+	lowest = clean.min(axis=0)
+	cube = np.ptp(clean, axis=0).max() / VOLUME_CUBES
+	counts = np.ceil(np.ptp(clean, axis=0) / cube).astype(int) + 1 + 2 * VOLUME_MARGIN
+	# The first coordinate runs fastest.
+	steps = np.indices(counts[::-1]).reshape(3, -1)[::-1].T
+	corners = lowest + cube * (steps - VOLUME_MARGIN)
+	distances = igl.signed_distance(
+		corners, clean, faces.astype(np.int64),
+		igl.SignedDistanceType.SIGNED_DISTANCE_TYPE_FAST_WINDING_NUMBER)[0] / cube
+	noise = case.sigma * np.random.default_rng(seed).standard_normal(len(distances))
+	values = np.clip(distances, -VOLUME_BAND, VOLUME_BAND) + noise
+	positions, triangles = igl.marching_cubes(values, corners, *counts.tolist())[:2]
+	save(positions, triangles, target)
 
 
 def make_noise(case, target):
@@ -189,6 +224,9 @@ def make_noise(case, target):
 		kind += ["--impulsive-share", IMPULSIVE_SHARE]
 	# Meshes get draws of their own even with one seed.
 	seed = int(hashlib.sha256(f"{case.model} {case.seed}".encode()).hexdigest()[:7], 16)
+	if case.kind == "volume":
+		extract_from_volume(case, seed, target)
+		return
 	tools.orthopoly("noise", case.truth, target, "--sigma", case.sigma, *kind, "--seed", seed)
 	if case.kind in ("uneven", "view"):
 		keep_part_of_noise(case, target)

@@ -215,7 +215,10 @@ def extract_from_volume(case, seed, target):
 	noise = case.sigma * np.random.default_rng(seed).standard_normal(len(distances))
 	values = np.clip(distances, -VOLUME_BAND, VOLUME_BAND) + noise
 	positions, triangles = igl.marching_cubes(values, corners, *counts.tolist())[:2]
-	save(positions, triangles, target)
+	# Without the bubbles that noise makes beside the surface.
+	parts = igl.facet_components(triangles)[1]
+	largest = triangles[parts == np.bincount(parts).argmax()]
+	save(*igl.remove_unreferenced(positions, largest)[:2], target)
 
 
 def make_noise(case, target):

@@ -47,15 +47,15 @@ Difference difference(const std::vector<Point>& a, const std::vector<Point>& b, 
 	return result;
 }
 
-// Nearly always the difference is rounding alone. Now and then one choice hangs by a hair (a
-// coefficient at three standard deviations, two sizes of structure of equal risk, a face just
-// folded) and falls the other way; that shows around it, as far as structures and vertex steps
-// reach, and is worth a small part of the noise.
-void check_same_but_for_rare_choices(const Difference& found)
+// The difference is rounding alone, which a place a thousand diagonals away has much of: there now
+// and then one choice hangs by a hair (a coefficient at three standard deviations, two sizes of
+// structure of equal risk, a face just folded) and falls the other way; that shows around it, as
+// far as structures and vertex steps reach, and is worth a small part of the noise.
+void check_same(const Difference& found, bool far)
 {
 	CAPTURE(found.mean, found.largest);
-	CHECK(found.mean < 5e-4);
-	CHECK(found.largest < 0.25);
+	CHECK(found.mean < (far ? 5e-4 : 1e-9));
+	CHECK(found.largest < (far ? 0.25 : 1e-6));
 }
 
 // Two noisy sheets that face away from each other, some squares apart.
@@ -87,8 +87,7 @@ TEST_CASE("Size, place, turn and order of a mesh do not matter", "[adaptive_meth
 		const DenoiseResult found = run(with_positions(mesh, each(mesh.positions, there)));
 		const bool far = !offset.isZero(0);
 		CHECK(found.estimated_noise == Approx(here.estimated_noise).epsilon(far ? 1e-8 : 1e-12));
-		check_same_but_for_rare_choices(
-			difference(found.positions, each(here.positions, there), scale * edge));
+		check_same(difference(found.positions, each(here.positions, there), scale * edge), far);
 	};
 	const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
 	{
@@ -110,15 +109,18 @@ TEST_CASE("Size, place, turn and order of a mesh do not matter", "[adaptive_meth
 		const Renumbered renumbered(mesh);
 		const DenoiseResult found = run(renumbered.mesh);
 		CHECK(found.estimated_noise == Approx(here.estimated_noise).epsilon(1e-12));
-		check_same_but_for_rare_choices(
-			difference(renumbered.in_given_order(found.positions), here.positions, edge));
+		check_same(
+			difference(renumbered.in_given_order(found.positions), here.positions, edge), false);
 	}
 }
 
-TEST_CASE("On a sphere and a cube not a single choice falls the other way", "[adaptive_method]")
+TEST_CASE("Not a single choice falls the other way on a turned mesh", "[adaptive_method]")
 {
-	const std::string name = GENERATE("cube", "sphere");
-	const TriangleMesh mesh = noisy(find_recipe(name).make(3000), 0.2, NoiseDirection::Random);
+	const std::string name = GENERATE("cube", "sphere", "slivers and folds");
+	CAPTURE(name);
+	const TriangleMesh mesh = name == "slivers and folds" ?
+								  ball_of_volume(0.7, 24, 0.5) :
+								  noisy(find_recipe(name).make(3000), 0.2, NoiseDirection::Random);
 	const double edge = mean_edge_length(mesh.positions, mesh.faces);
 	const std::vector<Point> here = run(mesh).positions;
 	const Eigen::Matrix3d rotation = some_rotation();

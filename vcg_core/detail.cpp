@@ -190,7 +190,8 @@ give_back_ridges(const Workspace& workspace, const Deviations& sigma, std::vecto
 	const Moves moves = moves_beside_edges(workspace, sigma, positions);
 	const std::vector<MovePredictor::DirectedMoves> directed =
 		MovePredictor::directed_moves(workspace, positions, moves.lengths);
-	const std::vector<Index> sample = sample_vertices(workspace, positions, PREDICTIONS);
+	const std::vector<Index> sample =
+		sample_vertices(workspace, workspace.mesh.positions, PREDICTIONS);
 	std::vector<double> shares;
 	std::vector<double> squares;
 	const std::vector<PredictedMove> sampled = predict_moves(workspace, moves, directed, sample);

@@ -227,7 +227,10 @@ private:
 	void choose_axes(Index i)
 	{
 		TangentFrame frame(guides_[at(i)]);
-		const int rings = std::min(RINGS_FOR_AXES, options_.largest_ring);
+		int rings = std::min(RINGS_FOR_AXES, options_.largest_ring);
+		while (rings < options_.largest_ring &&
+			   tried_.member_ends[at(rings)] < TangentFrame::ENOUGH)
+			++rings;
 		for (std::size_t k = 0; k < tried_.member_ends[at(rings)]; ++k)
 			frame.observe(guides_[at(tried_.members[k])], 1.0);
 		frame.align();

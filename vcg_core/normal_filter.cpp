@@ -280,7 +280,11 @@ private:
 	TangentFrame axes_of(Index i, const Structure<Lanes>& structure) const
 	{
 		TangentFrame frame(observations_[at(i)].guide);
-		const std::size_t end = LANES * structure.group_ends[at(options_.smallest_ring)];
+		int rings = options_.smallest_ring;
+		while (rings < options_.largest_ring &&
+			   at(structure.counts[at(rings)]) < TangentFrame::ENOUGH)
+			++rings;
+		const std::size_t end = LANES * structure.group_ends[at(rings)];
 		for (std::size_t k = 0; k < end; ++k) {
 			const Observation& member = observations_[at(structure.members[k])];
 			frame.observe(member.data, member.weight);
@@ -456,13 +460,13 @@ private:
 template<class AnyStructures>
 Variances measure_noise_floors(
 	const Workspace& workspace,
-	const NormalField& field,
+	const std::vector<double>& areas,
 	const NormalFilterOptions& options,
 	std::deque<AnyStructures>& structures)
 {
 	const Index wanted = std::min(
 		LARGEST_SAMPLE, std::max(LEAST_SAMPLE, workspace.mesh.face_count() / SAMPLE_EVERY));
-	std::vector<Index> sample = sample_by_value(field.weights, wanted);
+	std::vector<Index> sample = sample_by_value(areas, wanted);
 	std::sort(sample.begin(), sample.end());
 	std::vector<Variances> variances(sample.size());
 	workspace.execution.parallel_for(
@@ -518,10 +522,12 @@ let_vote(const Workspace& workspace, const NormalField& field, const NormalFilte
 	for (int worker = 0; worker < workspace.execution.threads(); ++worker)
 		structures.emplace_back(workspace, field, options);
 	workspace.execution.begin_part(0, 16);
-	const Variances floors = measure_noise_floors(workspace, field, options, structures);
+	// By areas as measured: what filtering has made of them has fewer digits that are no rounding.
+	const std::vector<double> areas = face_geometry(workspace, workspace.mesh.positions).areas;
+	const Variances floors = measure_noise_floors(workspace, areas, options, structures);
 	workspace.execution.begin_part(1, 16, 15);
 	const std::vector<std::uint8_t> chosen =
-		choose_evenly(workspace, field.weights, options.faces_per_structure);
+		choose_evenly(workspace, areas, options.faces_per_structure);
 	std::vector<AnyVoter> voters;
 	voters.reserve(structures.size());
 	for (AnyStructures& own : structures)

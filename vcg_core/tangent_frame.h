@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstddef>
 
 namespace orthopoly {
 
@@ -14,6 +15,10 @@ namespace orthopoly {
 /// space.
 class TangentFrame {
 public:
+	/// Directions that should be observed: one alone has no change around it, so that rounding
+	/// would turn the axes, and a few have but chance.
+	static constexpr std::size_t ENOUGH = 6;
+
 	explicit TangentFrame(const Point& normal) :
 			normal_(normal), tangent_(normal.unitOrthogonal()), bitangent_(normal.cross(tangent_))
 	{

@@ -68,11 +68,15 @@ public:
 	{
 	}
 
-	// One fold after another, since they may have vertices around them in common.
+	// One fold after another, since they may have vertices around them in common: in an order that
+	// does not depend on how the mesh is numbered or lies.
 	bool run()
 	{
 		bool moved = false;
-		const std::vector<std::vector<Index>> groups = group(find_folded());
+		std::vector<std::vector<Index>> groups = group(find_folded());
+		std::sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
+			return largest_square(a) < largest_square(b);
+		});
 		const int count = static_cast<int>(groups.size());
 		for (int k = 0; k < count; ++k) {
 			workspace_.execution.begin_part(k, count);
@@ -85,6 +89,17 @@ private:
 	Point cross_product(Index face) const
 	{
 		return face_cross_product(positions_, faces_[at(face)]);
+	}
+
+	// Of the cross products of some faces, as measured.
+	double largest_square(const std::vector<Index>& faces) const
+	{
+		double largest = 0;
+		for (const Index face : faces)
+			largest = std::max(
+				largest,
+				face_cross_product(workspace_.mesh.positions, faces_[at(face)]).squaredNorm());
+		return largest;
 	}
 
 	FoldAim aim_of(Index face) const { return fold_aim(workspace_, normals_, positions_, face); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "vcg_adapter.h"
 
+#include "float_mesh.h"
 #include "noise.h"
 
 #include <algorithm>
@@ -15,16 +16,7 @@ using namespace orthopoly;
 
 namespace {
 
-// The least mesh types the adapter has to cope with: a vertex with coordinates and flags, a face
-// with corners and flags, in either precision.
-class FloatVertex;
-class FloatFace;
-struct FloatTypes :
-		vcg::UsedTypes<vcg::Use<FloatVertex>::AsVertexType, vcg::Use<FloatFace>::AsFaceType> {};
-class FloatVertex : public vcg::Vertex<FloatTypes, vcg::vertex::Coord3f, vcg::vertex::BitFlags> {};
-class FloatFace : public vcg::Face<FloatTypes, vcg::face::VertexRef, vcg::face::BitFlags> {};
-using FloatMesh = vcg::tri::TriMesh<std::vector<FloatVertex>, std::vector<FloatFace>>;
-
+// As FloatMesh, in the other precision.
 class DoubleVertex;
 class DoubleFace;
 struct DoubleTypes :

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volume_support.h"
 
+#include "float_mesh.h"
 #include "vcg_adapter.h"
 
 #include <algorithm>
@@ -16,25 +17,17 @@ namespace orthopoly {
 
 namespace {
 
-class VolumeVertex;
-class VolumeFace;
-struct VolumeTypes :
-		vcg::UsedTypes<vcg::Use<VolumeVertex>::AsVertexType, vcg::Use<VolumeFace>::AsFaceType> {};
-class VolumeVertex :
-		public vcg::Vertex<VolumeTypes, vcg::vertex::Coord3f, vcg::vertex::BitFlags> {};
-class VolumeFace : public vcg::Face<VolumeTypes, vcg::face::VertexRef, vcg::face::BitFlags> {};
-using VolumeMesh = vcg::tri::TriMesh<std::vector<VolumeVertex>, std::vector<VolumeFace>>;
 using Volume = vcg::SimpleVolume<vcg::SimpleVoxel<float>>;
 
 } // namespace
 
-TriangleMesh surface_of(
-	const std::function<double(const Point&)>& distance, int cubes, double noise, unsigned seed)
+TriangleMesh
+surface_of(const std::function<double(const Point&)>& distance, int cubes, double noise)
 {
 	Volume volume;
 	const int values = cubes + 1;
 	volume.Init(vcg::Point3i(values, values, values), Volume::Box3x({-1, -1, -1}, {1, 1, 1}));
-	std::mt19937 generator(seed);
+	std::mt19937 generator(1);
 	std::normal_distribution<double> normal;
 	const double cube = 2.0 / cubes;
 	for (int z = 0; z < values; ++z) {
@@ -47,10 +40,10 @@ TriangleMesh surface_of(
 			}
 		}
 	}
-	using Walker = vcg::tri::TrivialWalker<VolumeMesh, Volume>;
-	VolumeMesh mesh;
+	using Walker = vcg::tri::TrivialWalker<FloatMesh, Volume>;
+	FloatMesh mesh;
 	Walker walker;
-	vcg::tri::MarchingCubes<VolumeMesh, Walker> marching(mesh, walker);
+	vcg::tri::MarchingCubes<FloatMesh, Walker> marching(mesh, walker);
 	walker.BuildMesh(mesh, volume, marching, 0);
 	return read_vcg_mesh(mesh).mesh;
 }

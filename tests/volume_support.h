@@ -10,11 +10,8 @@ namespace orthopoly {
 /// The surface where a function of a place within [-1, 1] on each axis is zero, below it inside: by
 /// vcglib's marching cubes from a volume of `cubes` a side.
 /// @param noise standard deviation of what is added to each value of the volume, in cubes
-TriangleMesh surface_of(
-	const std::function<double(const Point&)>& distance,
-	int cubes,
-	double noise,
-	unsigned seed = 1);
+TriangleMesh
+surface_of(const std::function<double(const Point&)>& distance, int cubes, double noise);
 
 /// The same of a ball of that radius.
 TriangleMesh ball_of_volume(double radius, int cubes, double noise);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 
 using namespace orthopoly;
@@ -70,11 +71,7 @@ TEST_CASE("Other noisy meshes do not lie on a grid", "[voxel_grid]")
 TEST_CASE("A grid in two directions is none of cubes", "[voxel_grid]")
 {
 	CHECK(share_of(make_flat_grid(40)) < 0.5);
-	TriangleMesh mesh = make_flat_grid(40);
-	const TriangleMesh strong = noisy(mesh, 0.3);
-	for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-		mesh.positions[i].z() += (strong.positions[i] - mesh.positions[i]).norm();
-	CHECK(share_of(mesh) < 0.02);
+	CHECK(share_of(noisy(make_flat_grid(40), 0.3)) < 0.02);
 }
 
 TEST_CASE("Meshes with hardly an edge lie on no grid", "[voxel_grid]")

@@ -243,12 +243,13 @@ struct Plan {
 	/// Of the last iteration, and of those before.
 	int vertex_iterations = VERTEX_ITERATIONS;
 	int guiding_vertex_iterations = VERTEX_ITERATIONS;
-	bool accelerated = true;
 	double cos_threshold = 0;
 	double cos_threshold_increment = LEAST_INCREMENT;
 	double selection = SELECTION;
 	Rings rings = {2, 4};
 	int height_rings = 5;
+
+	bool is_mostly_white() const { return correlation < 0.5; }
 };
 
 double strength_factor(Strength strength)
@@ -279,8 +280,7 @@ Plan plan_for(const DenoiseOptions& options, double noise, const Correlation& ki
 	plan.noise = noise;
 	plan.correlation = correlation;
 	plan.scanner_pairs *= strength_factor(options.strength);
-	plan.accelerated = correlation < 0.5;
-	if (!plan.accelerated)
+	if (!plan.is_mostly_white())
 		plan.vertex_iterations = SCANNER_VERTEX_ITERATIONS;
 	plan.cos_threshold = between(cos_threshold_for(noise), SCANNER_THRESHOLD, correlation);
 	plan.cos_threshold_increment =
@@ -407,7 +407,7 @@ public:
 			update.iterations = last ? plan_.vertex_iterations : plan_.guiding_vertex_iterations;
 			update.area_weights = true;
 			update.unfold_cosine = FOLD_COSINE;
-			update.accelerated = plan_.accelerated;
+			update.accelerated = plan_.is_mostly_white();
 			if (plan_.correlation < 1)
 				update.rest = &start;
 			if (!paces.empty())
@@ -545,7 +545,7 @@ private:
 				normals[i] = blend / length;
 			// Nobody is similar enough: where it points is the noise's doing, so that its vertices
 			// had better go by the other faces.
-			if (refined.spreads[i] >= 1 && plan_.correlation < 0.5)
+			if (refined.spreads[i] >= 1 && plan_.is_mostly_white())
 				normals[i] = Point::Zero();
 		});
 		return paces_for(refined.spreads);

@@ -227,10 +227,11 @@ private:
 	void choose_axes(Index i)
 	{
 		TangentFrame frame(guides_[at(i)]);
-		int rings = std::min(RINGS_FOR_AXES, options_.largest_ring);
-		while (rings < options_.largest_ring &&
-			   tried_.member_ends[at(rings)] < TangentFrame::ENOUGH)
-			++rings;
+		const int largest = options_.largest_ring;
+		const int rings = TangentFrame::rings_to_observe(
+			std::min(RINGS_FOR_AXES, largest), largest, [&](int ring) {
+				return tried_.member_ends[at(ring)];
+			});
 		for (std::size_t k = 0; k < tried_.member_ends[at(rings)]; ++k)
 			frame.observe(guides_[at(tried_.members[k])], 1.0);
 		frame.align();

@@ -280,10 +280,10 @@ private:
 	TangentFrame axes_of(Index i, const Structure<Lanes>& structure) const
 	{
 		TangentFrame frame(observations_[at(i)].guide);
-		int rings = options_.smallest_ring;
-		while (rings < options_.largest_ring &&
-			   at(structure.counts[at(rings)]) < TangentFrame::ENOUGH)
-			++rings;
+		const int rings = TangentFrame::rings_to_observe(
+			options_.smallest_ring, options_.largest_ring, [&](int ring) {
+				return structure.counts[at(ring)];
+			});
 		const std::size_t end = LANES * structure.group_ends[at(rings)];
 		for (std::size_t k = 0; k < end; ++k) {
 			const Observation& member = observations_[at(structure.members[k])];

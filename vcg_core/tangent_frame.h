@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstddef>
 
 namespace orthopoly {
 
@@ -15,9 +14,18 @@ namespace orthopoly {
 /// space.
 class TangentFrame {
 public:
-	/// Directions that should be observed: one alone has no change around it, so that rounding
-	/// would turn the axes, and a few have but chance.
-	static constexpr std::size_t ENOUGH = 6;
+	/// The number of rings, from some to the largest, within which are enough directions to
+	/// observe: one alone has no change around it, so that rounding would turn the axes, and a few
+	/// have but chance.
+	/// @param count_within the number of directions within a number of rings
+	template<class Count>
+	static int rings_to_observe(int rings, int largest, Count count_within)
+	{
+		constexpr int ENOUGH = 6;
+		while (rings < largest && static_cast<int>(count_within(rings)) < ENOUGH)
+			++rings;
+		return rings;
+	}
 
 	explicit TangentFrame(const Point& normal) :
 			normal_(normal), tangent_(normal.unitOrthogonal()), bitangent_(normal.cross(tangent_))

@@ -74,7 +74,7 @@ public:
 	{
 		bool moved = false;
 		std::vector<std::vector<Index>> groups = group(find_folded());
-		std::sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
+		std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
 			return largest_square(a) < largest_square(b);
 		});
 		const int count = static_cast<int>(groups.size());

@@ -142,6 +142,10 @@ void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseR
 			count_of(result.non_manifold_edges, "edge", "edges") +
 			" with more than two faces, or two faces of opposite orientation: results are less good "
 			"there");
+	if (result.seam_vertices > 0)
+		run.log(
+			count_of(result.seam_vertices, "vertex", "vertices") +
+			" along seams, where another is at the same place, moved with that one");
 
 	run.outputs.insert(
 		run.outputs.end(),
@@ -150,6 +154,7 @@ void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseR
 			{"iterations_done", result.iterations_done},
 			{"degenerate_faces", static_cast<int>(result.degenerate_faces)},
 			{"non_manifold_edges", static_cast<int>(result.non_manifold_edges)},
+			{"seam_vertices", static_cast<int>(result.seam_vertices)},
 			{"folded_faces_before", static_cast<int>(result.folded_faces_before)},
 			{"folded_faces_after", static_cast<int>(result.folded_faces_after)},
 			{"moved_vertices", static_cast<int>(result.moved_vertices)},

@@ -4,7 +4,9 @@
 #include "shapes.h"
 
 #include <array>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace orthopoly {
@@ -112,6 +114,37 @@ TriangleMesh make_duplicate_vertex()
 				use_twin = !use_twin;
 			}
 		}
+	}
+	return mesh;
+}
+
+TriangleMesh make_seam()
+{
+	TriangleMesh mesh = box();
+	std::map<Index, Index> twins;
+	for (Face& face : mesh.faces) {
+		const bool is_upper = face_centroid(mesh.positions, face).z() > 0;
+		for (Index& vertex : face) {
+			const Point point = mesh.positions[at(vertex)];
+			if (!is_upper || std::abs(point.z()) > 0.01)
+				continue;
+			if (twins.count(vertex) == 0)
+				twins[vertex] = add_vertex(mesh, point);
+			vertex = twins[vertex];
+		}
+	}
+	return mesh;
+}
+
+TriangleMesh make_loose_triangles()
+{
+	const TriangleMesh whole = box();
+	TriangleMesh mesh;
+	for (const Face& face : whole.faces) {
+		const Index first = mesh.vertex_count();
+		for (const Index vertex : face)
+			mesh.positions.push_back(whole.positions[at(vertex)]);
+		mesh.faces.push_back({first, first + 1, first + 2});
 	}
 	return mesh;
 }

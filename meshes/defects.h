@@ -15,6 +15,10 @@ TriangleMesh make_non_manifold_vertex();
 TriangleMesh make_degenerate_face();
 /// A box in which one corner is two vertices at the same place, each with a part of the faces.
 TriangleMesh make_duplicate_vertex();
+/// A box in two charts: the vertices where its upper half begins are there twice, one for each.
+TriangleMesh make_seam();
+/// A box in which every face has three vertices of its own.
+TriangleMesh make_loose_triangles();
 /// A box with one face twice, and once more the other way round.
 TriangleMesh make_duplicate_face();
 /// A box and a vertex that no face uses, some way off.

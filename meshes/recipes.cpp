@@ -29,6 +29,8 @@ const std::vector<Recipe>& recipes()
 		of_one_size("non_manifold_vertex", make_non_manifold_vertex),
 		of_one_size("degenerate_face", make_degenerate_face),
 		of_one_size("duplicate_vertex", make_duplicate_vertex),
+		of_one_size("seam", make_seam),
+		of_one_size("loose_triangles", make_loose_triangles),
 		of_one_size("duplicate_face", make_duplicate_face),
 		of_one_size("unreferenced_vertex", make_unreferenced_vertex),
 		of_one_size("isolated_face", make_isolated_face),

@@ -211,8 +211,23 @@ TEST_CASE("each defect is there, and only that one", "[meshes]")
 	SECTION("duplicate_vertex")
 	{
 		CHECK(inspect_defect("duplicate_vertex").duplicate_vertices == 1);
+		CHECK(inspect_defect("duplicate_vertex").seam_vertices == 1);
 		CHECK(inspect_defect("duplicate_vertex").duplicate_faces == 0);
 		CHECK(inspect_defect("duplicate_vertex").boundary_vertices > 0);
+	}
+	SECTION("seam")
+	{
+		CHECK(inspect_defect("seam").duplicate_vertices == 24);
+		CHECK(inspect_defect("seam").seam_vertices == 24);
+		CHECK(inspect_defect("seam").boundary_vertices == 48);
+		CHECK(inspect_defect("seam").components == 2);
+	}
+	SECTION("loose_triangles")
+	{
+		const TriangleMesh mesh = make_loose_triangles();
+		CHECK(mesh.vertex_count() == 3 * box.face_count());
+		CHECK(inspect(mesh).seam_vertices == mesh.vertex_count() - box.vertex_count());
+		CHECK(inspect(mesh).components == box.face_count());
 	}
 	SECTION("duplicate_face")
 	{

@@ -3,6 +3,7 @@
 
 #include "defects.h"
 #include "errors.h"
+#include "seams.h"
 #include "shapes.h"
 #include "test_support.h"
 
@@ -180,6 +181,15 @@ TEST_CASE("fixed vertices stay, and the others do not notice", "[noise]")
 	const std::vector<Point> noisy = add_noise(mesh, noise(0.2, NoiseDirection::Random));
 	for (std::size_t i = 0; i < noisy.size(); ++i)
 		REQUIRE(noisy[i] == (mesh.fixed[i] != 0 ? mesh.positions[i] : free[i]));
+}
+
+TEST_CASE("vertices that are the same on a seam move together", "[noise]")
+{
+	const TriangleMesh mesh = make_seam();
+	TriangleMesh noisy = mesh;
+	noisy.positions = add_noise(mesh, noise(0.2, NoiseDirection::Normal));
+	CHECK(find_seams(noisy).repeated == find_seams(mesh).repeated);
+	CHECK(noisy.positions.back() != mesh.positions.back());
 }
 
 TEST_CASE("defects do not spoil the noise", "[noise]")

@@ -32,7 +32,7 @@ constexpr Index GRAIN = 1024;
 // edges would be there once too often.
 void add_mentions(const Face& face, Index vertex, std::vector<EdgeMention>& mentions)
 {
-	if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
+	if (!has_three_vertices(face))
 		return;
 	for (std::size_t k = 0; k < 3; ++k) {
 		const Index a = face[k];

@@ -6,12 +6,14 @@
 #include "numbering.h"
 #include "paper_method.h"
 #include "parameters.h"
+#include "seams.h"
 #include "workspace.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 
 namespace orthopoly {
@@ -127,7 +129,14 @@ DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& given, Pro
 		TriangleMesh prepared = renumbered(mesh, numbering, origin);
 		// A cancel is heard between any two of these steps.
 		execution.begin_phase(0.01, 0.03, "finding neighbours");
-		const Workspace workspace(prepared, execution);
+		std::optional<Workspace> built(std::in_place, prepared, execution);
+		const Seams seams = find_seams(prepared, built->vertex_faces, built->edges);
+		if (seams.repeated > 0) {
+			prepared = sew(prepared, seams);
+			built.emplace(prepared, execution);
+		}
+		const Workspace& workspace = *built;
+		result.seam_vertices = seams.repeated;
 		if (options.keep_boundary) {
 			prepared.fixed.resize(prepared.positions.size(), 0);
 			for (std::size_t i = 0; i < prepared.fixed.size(); ++i)
@@ -140,11 +149,11 @@ DenoiseResult denoise(const TriangleMesh& mesh, const DenoiseOptions& given, Pro
 		method.run(workspace, options, result, positions);
 		execution.begin_phase(0.99, 0.999, "looking at the result");
 		result.folded_faces_after = count_folded_faces(positions, workspace);
-		execution.for_each(prepared.vertex_count(), [&](std::size_t i) {
+		execution.for_each(mesh.vertex_count(), [&](std::size_t i) {
+			const std::size_t k = at(seams.sewn(static_cast<Index>(i)));
 			// What did not move stays bit for bit.
-			if (positions[i] != prepared.positions[i])
-				result.positions[static_cast<std::size_t>(numbering.vertices[i])] =
-					positions[i] + origin;
+			if (positions[k] != prepared.positions[k])
+				result.positions[at(numbering.vertices[i])] = positions[k] + origin;
 		});
 		record_displacements(mesh, result);
 		progress.report(1, "done");

@@ -97,6 +97,8 @@ struct DenoiseResult {
 	Index degenerate_faces = 0;
 	/// Edges with more than two faces or two faces of opposite orientation.
 	Index non_manifold_edges = 0;
+	/// Vertices that are the same as another on a seam (seams.h), and moved with it.
+	Index seam_vertices = 0;
 	/// Faces more than 90 degrees away from the mean normal of those around them.
 	Index folded_faces_before = 0;
 	Index folded_faces_after = 0;

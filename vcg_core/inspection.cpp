@@ -2,6 +2,7 @@
 #include "inspection.h"
 
 #include "adjacency.h"
+#include "seams.h"
 
 #include <algorithm>
 #include <tuple>
@@ -60,6 +61,8 @@ Inspection inspect(const TriangleMesh& mesh)
 	const EdgeDefects edges = find_edge_defects(mesh.faces, around, execution);
 	for (const std::uint8_t flag : edges.boundary)
 		found.boundary_vertices += flag;
+	if (found.not_finite_vertices == 0)
+		found.seam_vertices = find_seams(mesh, around, edges).repeated;
 	found.duplicate_vertices = count_duplicate_vertices(mesh);
 	found.duplicate_faces = count_duplicate_faces(mesh);
 	found.non_manifold_edges = edges.non_manifold;

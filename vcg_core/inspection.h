@@ -12,6 +12,8 @@ struct Inspection {
 	Index unreferenced_vertices = 0;
 	/// Vertices at the same place as one before them.
 	Index duplicate_vertices = 0;
+	/// Those of them that are the same as another on a seam (seams.h): methods move these together.
+	Index seam_vertices = 0;
 	/// Faces on the same three vertices as one before them, whatever their orientation.
 	Index duplicate_faces = 0;
 	/// Faces without area.

@@ -3,6 +3,7 @@
 
 #include "errors.h"
 #include "parameters.h"
+#include "seams.h"
 
 #include <cmath>
 #include <string>
@@ -113,25 +114,27 @@ std::vector<Point> vertex_normals(const TriangleMesh& mesh)
 
 } // namespace
 
-std::vector<Point> add_noise(const TriangleMesh& mesh, const NoiseOptions& options)
+std::vector<Point> add_noise(const TriangleMesh& given, const NoiseOptions& options)
 {
 	for (const Parameter<NoiseOptions>& parameter : noise_parameters())
 		parameter.check(parameter.get(options));
-	validate(mesh);
-	if (mesh.faces.empty())
+	validate(given);
+	if (given.faces.empty())
 		throw InvalidMesh(
-			"the mesh has " + std::to_string(mesh.vertex_count()) +
+			"the mesh has " + std::to_string(given.vertex_count()) +
 			" vertices and no faces, so there is no mean edge length to scale the noise by; "
 			"give a triangle mesh");
 
+	const Seams seams = find_seams(given);
+	const TriangleMesh mesh = sew(given, seams);
 	const double amplitude = options.sigma * mean_edge_length(mesh.positions, mesh.faces);
 	std::vector<Point> normals;
 	if (options.direction == NoiseDirection::Normal)
 		normals = vertex_normals(mesh);
 
 	RandomNumbers random(options.seed);
-	std::vector<Point> positions = mesh.positions;
-	for (std::size_t i = 0; i < positions.size(); ++i) {
+	std::vector<Point> displacements(mesh.positions.size(), Point::Zero());
+	for (std::size_t i = 0; i < displacements.size(); ++i) {
 		// Drawn for every vertex, moved or not, so that the others do not depend on it.
 		const bool chosen = random.uniform() < options.impulsive_share;
 		Point displacement;
@@ -145,7 +148,13 @@ std::vector<Point> add_noise(const TriangleMesh& mesh, const NoiseOptions& optio
 										 Point(random.gaussian_vector().normalized()));
 		}
 		if (chosen && !mesh.is_fixed(static_cast<Index>(i)))
-			positions[i] += amplitude * displacement;
+			displacements[i] = amplitude * displacement;
+	}
+	std::vector<Point> positions = given.positions;
+	for (std::size_t i = 0; i < positions.size(); ++i) {
+		const Point& displacement = displacements[at(seams.sewn(static_cast<Index>(i)))];
+		if (!displacement.isZero(0))
+			positions[i] += displacement;
 	}
 	return positions;
 }

@@ -28,7 +28,8 @@ struct NoiseOptions {
 	std::uint32_t seed = 1;
 };
 
-/// The positions with noise on them, #V. Fixed vertices stay bit for bit.
+/// The positions with noise on them, #V. Fixed vertices stay bit for bit; those that are the same
+/// on a seam (seams.h) move together.
 ///
 /// Same mesh, options and seed: same result on every platform (the generator, the transformation to
 /// a Gaussian and the order of the draws are all fixed here; the standard library's distributions

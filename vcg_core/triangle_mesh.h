@@ -69,6 +69,12 @@ inline Point face_cross_product(const std::vector<Point>& positions, const Face&
 	return (corner(1) - corner(0)).cross(corner(2) - corner(0));
 }
 
+/// False where a face names a vertex twice.
+inline bool has_three_vertices(const Face& face)
+{
+	return face[0] != face[1] && face[1] != face[2] && face[2] != face[0];
+}
+
 /// Mean of the corners of a face; reckoned from the first of them, since the sum of three corners
 /// far off would lose digits.
 inline Point face_centroid(const std::vector<Point>& positions, const Face& face)

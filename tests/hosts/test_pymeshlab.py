@@ -17,7 +17,7 @@ NOISE = "apply_coord_gaussian_noise"
 # Names that scripts may rely on, and their types.
 DENOISE_OUTPUTS = {
     "nothing_to_do": bool, "iterations_done": int, "degenerate_faces": int,
-    "non_manifold_edges": int, "folded_faces_before": int, "folded_faces_after": int,
+    "non_manifold_edges": int, "seam_vertices": int, "folded_faces_before": int, "folded_faces_after": int,
     "moved_vertices": int, "mean_displacement": float, "max_displacement": float,
 }
 ERROR_OUTPUTS = {

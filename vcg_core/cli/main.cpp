@@ -9,6 +9,7 @@
 #include "noise_level.h"
 #include "parameters.h"
 #include "progress_part.h"
+#include "seams.h"
 #include "terminal.h"
 #include "workspace.h"
 
@@ -201,6 +202,9 @@ void print_result(const TriangleMesh& mesh, const DenoiseResult& result, double 
 	if (result.degenerate_faces > 0 || result.non_manifold_edges > 0)
 		std::cout << "  left out: " << result.degenerate_faces << " faces without area; "
 				  << result.non_manifold_edges << " non-manifold edges kept as they are\n";
+	if (result.seam_vertices > 0)
+		std::cout << "  seams: " << result.seam_vertices
+				  << " vertices moved with another at the same place\n";
 }
 
 int run_denoise(const DenoiseArguments& arguments)
@@ -253,6 +257,7 @@ int run_denoise(const DenoiseArguments& arguments)
 			{"iterations_done", result.iterations_done},
 			{"degenerate_faces", result.degenerate_faces},
 			{"non_manifold_edges", result.non_manifold_edges},
+			{"seam_vertices", result.seam_vertices},
 			{"folded_faces_before", result.folded_faces_before},
 			{"folded_faces_after", result.folded_faces_after},
 			{"moved_vertices", result.moved_vertices},
@@ -349,6 +354,7 @@ int run_info(const InfoArguments& arguments)
 	json["degenerate_faces"] = found.degenerate_faces;
 	json["duplicate_faces"] = found.duplicate_faces;
 	json["duplicate_vertices"] = found.duplicate_vertices;
+	json["seam_vertices"] = found.seam_vertices;
 	json["unreferenced_vertices"] = found.unreferenced_vertices;
 	json["non_manifold_edges"] = found.non_manifold_edges;
 	json["not_finite_vertices"] = found.not_finite_vertices;
@@ -356,7 +362,7 @@ int run_info(const InfoArguments& arguments)
 	try {
 		validate(mesh);
 		if (found.degenerate_faces < mesh.face_count())
-			json["white_noise"] = white_noise(mesh);
+			json["white_noise"] = white_noise(sew(mesh, find_seams(mesh)));
 	}
 	catch (const InvalidMesh& error) {
 		json["unusable"] = error.what();

@@ -448,6 +448,21 @@ TEST_CASE("A clean mesh stays as it is", "[adaptive_method]")
 	}
 }
 
+TEST_CASE("Noise on a smooth surface of few faces is noise", "[adaptive_method]")
+{
+	// What fits this coarse leave over alternates from vertex to vertex.
+	const TriangleMesh truth = make_sphere(320);
+	const double sigma = GENERATE(0.05, 0.1, 0.2);
+	CAPTURE(sigma);
+	const TriangleMesh mesh = noisy(truth, sigma);
+	const DenoiseResult result = run(mesh);
+	CHECK(result.estimated_noise == Approx(sigma).epsilon(0.2));
+	const ErrorMeasures before = measure(mesh, truth);
+	const ErrorMeasures after = measure(with_positions(mesh, result.positions), truth);
+	CHECK(after.mean_angle < 0.4 * before.mean_angle);
+	CHECK(after.vertex_error < 0.6 * before.vertex_error);
+}
+
 TEST_CASE("Ridges as narrow as the triangles are no noise", "[adaptive_method]")
 {
 	// Grooves three edges apart all over a sphere, which polynomials over whole rings do not

@@ -99,6 +99,30 @@ TEST_CASE("Ridges as narrow as the triangles are given back", "[detail]")
 	CHECK(give_back_detail(noise.workspace, sigma, 1, positions).predicted < 0.1);
 }
 
+TEST_CASE("Vertices that make up for those around them are not detail", "[detail]")
+{
+	// As simplified meshes have it: whichever way a neighbour lies, it is up where this one is
+	// down.
+	const TriangleMesh flat = make_flat_grid(60);
+	const StepFixture noise(noisy(flat, 0.15));
+	std::vector<Point> measured = noise.mesh.positions;
+	for (std::size_t i = 0; i < measured.size(); ++i) {
+		double sum = 0;
+		const Index vertex = static_cast<Index>(i);
+		for (const Index* it = noise.workspace.vertex_faces.begin(vertex);
+			 it != noise.workspace.vertex_faces.end(vertex);
+			 ++it) {
+			for (const Index corner : noise.mesh.faces[at(*it)])
+				sum += corner != vertex ? noise.mesh.positions[at(corner)].z() : 0;
+		}
+		measured[i].z() -= 0.5 * sum / noise.workspace.vertex_faces.size(vertex);
+	}
+	const StepFixture f(with_positions(flat, measured));
+	std::vector<Point> positions = flat.positions;
+	const double sigma = 0.15 * mean_edge_length(flat.positions, flat.faces);
+	CHECK(give_back_detail(f.workspace, sigma, 1, positions).predicted < 0.05);
+}
+
 TEST_CASE("Vertices that slid along an edge are not detail", "[detail]")
 {
 	// Roofs side by side, whose ridges were moved along a side.

@@ -46,6 +46,11 @@ constexpr double RIDGED = 0.2;
 constexpr double SURELY_RIDGED = 0.35;
 constexpr Index PREDICTIONS = 2000;
 
+// Median share that the directions of neighbours predict of what their plain sum does not, up to
+// which they do not count, and from which they do.
+constexpr double UNDIRECTED = 0.05;
+constexpr double DIRECTED = 0.12;
+
 // Vertices with less than this part of the overall noise do not say how much of it is detail: what
 // they have been moved by is none of it.
 constexpr double NOISY = 0.5;
@@ -193,15 +198,18 @@ give_back_ridges(const Workspace& workspace, const Deviations& sigma, std::vecto
 	const std::vector<Index> sample =
 		sample_vertices(workspace, workspace.mesh.positions, PREDICTIONS);
 	std::vector<double> shares;
+	std::vector<double> directed_shares;
 	std::vector<double> squares;
 	const std::vector<PredictedMove> sampled = predict_moves(workspace, moves, directed, sample);
 	for (std::size_t k = 0; k < sampled.size(); ++k) {
 		if (sigma.factor(at(sample[k])) < NOISY)
 			continue;
 		shares.push_back(sampled[k].share);
+		directed_shares.push_back(sampled[k].directed_share);
 		squares.push_back(sampled[k].square);
 	}
-	const TakenMoves taken = {quantile(squares, 0.5), quantile(shares, 0.5)};
+	const double counts = way_between(UNDIRECTED, DIRECTED, quantile(directed_shares, 0.5));
+	const TakenMoves taken = {quantile(squares, 0.5), counts * quantile(shares, 0.5)};
 	const double ridged = way_between(RIDGED, SURELY_RIDGED, taken.predicted);
 	if (ridged == 0)
 		return taken;

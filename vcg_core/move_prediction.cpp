@@ -89,10 +89,18 @@ PredictedMove MovePredictor::predict(Index vertex)
 	const double variance = (squares - sums[3] * sums[3] / count) / (count - 1);
 	if (!(variance > 0))
 		return {};
+	// The variance that is left by a straight line of negative slope through plain sums and moves.
+	const double common = std::min(0.0, sums[0] - gram(0, 3) * sums[3] / count);
+	const double spread = gram(0, 0) - gram(0, 3) * gram(0, 3) / count;
+	const double alternating = spread > 0 ? common * common / spread / (count - 2) : 0;
 	gram.diagonal().array() += RIDGE_REGRESSION * gram.trace();
 	const Terms coefficients = gram.ldlt().solve(sums);
 	const double left = std::max(0.0, squares - coefficients.dot(sums)) / (count - TERMS);
-	return {coefficients.dot(terms_of(vertex)), 1 - left / variance, squares / count};
+	return {
+		coefficients.dot(terms_of(vertex)),
+		1 - left / variance,
+		1 - left / (variance - alternating),
+		squares / count};
 }
 
 } // namespace orthopoly

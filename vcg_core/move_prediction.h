@@ -23,6 +23,10 @@ struct PredictedMove {
 	/// Share of the variance of the moves around that is predicted; about zero where they are
 	/// noise.
 	double share = 0;
+	/// Share of what is left of it by the plain sum alone, where moves alternate, that the
+	/// directions predict: about zero where any neighbour tells as much as any other, as where each
+	/// vertex makes up for those around it.
+	double directed_share = 0;
 	/// Mean square of the moves around.
 	double square = 0;
 };

@@ -39,14 +39,16 @@ OWN_MESHES = ["cube", "sphere", "torus", "part", "thin_plate", "height_field"]
 CGAL_MESHES = ["fandisk", "anchor_dense", "blade", "bones", "elephant", "armadillo", "bear", "knot2"]
 # Kind and sigma in mean edge lengths. Random is Table 2's, normal that of the usual test sets. Uneven
 # is none at one end of the mesh and twice sigma at the other, view along one axis, as scanners have it.
-# Volume is in the values of one that the mesh is extracted from anew, sigma in its cubes.
+# Volume is in the values of one that the mesh is extracted from anew, sigma in its cubes. Simplified is
+# on four times the faces, in their mean edge lengths, and simplified to the mesh's own number by MeshLab.
 NOISES = [
 	("normal", 0.1), ("normal", 0.2), ("normal", 0.3), ("normal", 0.6),
 	("random", 0.2), ("random", 0.4), ("isotropic", 0.3), ("impulsive", 0.5),
 	("uneven", 0.2), ("view", 0.3), ("volume", 0.3),
+	("simplified", 0.3),
 ]
 # What `orthopoly noise` makes them of.
-DIRECTIONS = {"impulsive": "random", "uneven": "normal", "view": "isotropic"}
+DIRECTIONS = {"impulsive": "random", "uneven": "normal", "view": "isotropic", "simplified": "normal"}
 # Cubes of a volume along the longest side of the mesh, those around it, and how far from the surface
 # it has distances; open meshes have no inside to measure them from.
 VOLUME_CUBES = 80
@@ -221,6 +223,28 @@ def extract_from_volume(case, seed, target):
 	save(*igl.remove_unreferenced(positions, largest)[:2], target)
 
 
+def subdivide(path, target):
+	"""Four faces of each."""
+	import pymeshlab
+
+	with LOADING:
+		meshes = pymeshlab.MeshSet()
+		meshes.load_new_mesh(str(path))
+		meshes.meshing_surface_subdivision_midpoint(
+			iterations=1, threshold=pymeshlab.PercentageValue(0))
+		meshes.save_current_mesh(str(target))
+
+
+def simplify(path, faces):
+	import pymeshlab
+
+	with LOADING:
+		meshes = pymeshlab.MeshSet()
+		meshes.load_new_mesh(str(path))
+		meshes.meshing_decimation_quadric_edge_collapse(targetfacenum=faces)
+		meshes.save_current_mesh(str(path))
+
+
 def make_noise(case, target):
 	kind = ["--direction", DIRECTIONS.get(case.kind, case.kind)]
 	if case.kind == "impulsive":
@@ -230,7 +254,13 @@ def make_noise(case, target):
 	if case.kind == "volume":
 		extract_from_volume(case, seed, target)
 		return
-	tools.orthopoly("noise", case.truth, target, "--sigma", case.sigma, *kind, "--seed", seed)
+	source = case.truth
+	if case.kind == "simplified":
+		source = target
+		subdivide(case.truth, target)
+	tools.orthopoly("noise", source, target, "--sigma", case.sigma, *kind, "--seed", seed)
+	if case.kind == "simplified":
+		simplify(target, len(load(case.truth)[1]))
 	if case.kind in ("uneven", "view"):
 		keep_part_of_noise(case, target)
 

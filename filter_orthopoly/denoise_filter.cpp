@@ -120,6 +120,10 @@ void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseR
 			"noise along the surface normals: " + in_words(result.estimated_noise) +
 			" mean edge lengths (estimated)" + describe_range(result) +
 			(options.noise_level ? ", taken as " + in_words(*options.noise_level) : ""));
+	if (result.spikes > 0)
+		run.log(
+			count_of(result.spikes, "lone vertex", "lone vertices") +
+			" far out (spikes) put back onto the surface");
 	if (nothing_to_do)
 		run.log(describe_nothing_to_do(options));
 	const std::string resolved = describe_resolved(options, result.resolved);
@@ -168,6 +172,7 @@ void report_result(FilterRun& run, const DenoiseOptions& options, const DenoiseR
 				{"estimated_noise", result.estimated_noise},
 				{"estimated_noise_low", result.estimated_noise_low},
 				{"estimated_noise_high", result.estimated_noise_high},
+				{"spikes", static_cast<int>(result.spikes)},
 			});
 	report_resolved(run, result.resolved);
 }

@@ -11,6 +11,7 @@
 #include "outliers.h"
 #include "prefilter.h"
 #include "sampling.h"
+#include "spikes.h"
 #include "unfolding.h"
 #include "vertex_update.h"
 
@@ -671,6 +672,67 @@ void record_range(const std::vector<double>& factors, DenoiseResult& result)
 	result.estimated_noise_high = level_at(1 - LOW_SHARE);
 }
 
+// What noise a mesh has.
+struct Noise {
+	Correlation correlation;
+	UnevenNoise uneven;
+	OutlierRepair outliers;
+	// In mean edge lengths, and what no noise and hardly any detail of the mesh is beyond.
+	double level = 0;
+	double most = 0;
+};
+
+Noise estimate_noise(const Workspace& workspace, const DenoiseOptions& options)
+{
+	workspace.execution.begin_phase(0.05, 0.08, "estimating the noise");
+	const NoiseLevels levels = estimate_noise_levels(workspace, workspace.mesh.positions);
+	Noise noise;
+	double rough = levels.rough;
+	if (options.noise_type != NoiseType::White) {
+		const NoiseCorrelation measured =
+			measure_noise_correlation(workspace, workspace.mesh.positions);
+		const bool scanner = options.noise_type == NoiseType::Scanner;
+		noise.correlation = {scanner ? 1 : measured.certainty(), measured.is_of_voxels()};
+		// What a polynomial over two rings follows of such noise, one over more does not.
+		rough = std::max(rough, measured.narrow_level);
+	}
+	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
+	if (noise.correlation.share == 0)
+		noise.uneven = levels.uneven;
+	// Beside a clean part noise looks like outliers.
+	if (noise.correlation.share < 1 && noise.uneven.certainty < 0.5)
+		noise.outliers = repair_outliers(workspace, levels);
+	if (noise.outliers.share > 0)
+		noise.uneven = {};
+	// Noise that goes together over several edges grows with the rings as detail does.
+	const double white = noise.outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;
+	const double even = between(white, rough, noise.correlation.share);
+	const double level = between(even, noise.uneven.level, noise.uneven.certainty);
+	noise.level = between(level, noise.outliers.level, noise.outliers.share);
+	noise.most = std::max(rough, noise.uneven.level);
+	return noise;
+}
+
+// Runs the method for the noise that the workspace's mesh has.
+void run_for(
+	const Noise& noise,
+	const Workspace& workspace,
+	const DenoiseOptions& options,
+	DenoiseResult& result,
+	std::vector<Point>& positions)
+{
+	result.estimated_noise = noise.level;
+	result.resolved.noise_level = options.noise_level.value_or(noise.level);
+	result.resolved.noise_type =
+		noise.correlation.share > 0.5 ? NoiseType::Scanner : NoiseType::White;
+	if (noise.outliers.share == 0)
+		lower_and_run(
+			workspace, options, noise.correlation, noise.uneven.factors, result, positions);
+	else
+		repair_and_run(workspace, options, noise.correlation, noise.outliers, result, positions);
+	record_range(noise.uneven.factors, result);
+}
+
 } // namespace
 
 void run_adaptive_method(
@@ -679,40 +741,24 @@ void run_adaptive_method(
 	DenoiseResult& result,
 	std::vector<Point>& positions)
 {
-	workspace.execution.begin_phase(0.05, 0.08, "estimating the noise");
-	const NoiseLevels levels = estimate_noise_levels(workspace, workspace.mesh.positions);
-	Correlation correlation;
-	double rough = levels.rough;
-	if (options.noise_type != NoiseType::White) {
-		const NoiseCorrelation measured =
-			measure_noise_correlation(workspace, workspace.mesh.positions);
-		const bool scanner = options.noise_type == NoiseType::Scanner;
-		correlation = {scanner ? 1 : measured.certainty(), measured.is_of_voxels()};
-		// What a polynomial over two rings follows of such noise, one over more does not.
-		rough = std::max(rough, measured.narrow_level);
+	const Noise noise = estimate_noise(workspace, options);
+	// Where outliers make the noise, these are most of it.
+	Spikes spikes;
+	if (noise.outliers.share < 0.5 && options.noise_level.value_or(1) > NEGLIGIBLE_NOISE)
+		spikes = find_spikes(workspace, noise.most);
+	if (spikes.vertices.empty()) {
+		run_for(noise, workspace, options, result, positions);
+		return;
 	}
-	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
-	UnevenNoise uneven;
-	if (correlation.share == 0)
-		uneven = levels.uneven;
-	// Beside a clean part noise looks like outliers.
-	OutlierRepair outliers;
-	if (correlation.share < 1 && uneven.certainty < 0.5)
-		outliers = repair_outliers(workspace, levels);
-	if (outliers.share > 0)
-		uneven = {};
-	// Noise that goes together over several edges grows with the rings as detail does.
-	const double white = outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;
-	const double even = between(white, rough, correlation.share);
-	const double level = between(even, uneven.level, uneven.certainty);
-	result.estimated_noise = between(level, outliers.level, outliers.share);
-	result.resolved.noise_level = options.noise_level.value_or(result.estimated_noise);
-	result.resolved.noise_type = correlation.share > 0.5 ? NoiseType::Scanner : NoiseType::White;
-	if (outliers.share == 0)
-		lower_and_run(workspace, options, correlation, uneven.factors, result, positions);
-	else
-		repair_and_run(workspace, options, correlation, outliers, result, positions);
-	record_range(uneven.factors, result);
+	TriangleMesh mesh = workspace.mesh;
+	mesh.positions = std::move(spikes.positions);
+	const Workspace without(mesh, workspace.execution);
+	run_for(estimate_noise(without, options), without, options, result, positions);
+	result.spikes = static_cast<Index>(spikes.vertices.size());
+	if (result.status == DenoiseResult::Status::NothingToDo) {
+		result.status = DenoiseResult::Status::Done;
+		positions = mesh.positions;
+	}
 }
 
 } // namespace orthopoly

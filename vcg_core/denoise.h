@@ -92,6 +92,9 @@ struct DenoiseResult {
 	/// place to place; `estimated_noise` is the root mean square then. The same as that elsewhere.
 	double estimated_noise_low = 0;
 	double estimated_noise_high = 0;
+	/// Adaptive: vertices that stood far out by themselves (spikes.h) and were put back first; the
+	/// noise above is that without them.
+	Index spikes = 0;
 	int iterations_done = 0;
 	/// Faces without area, which are neither filtered nor vote.
 	Index degenerate_faces = 0;

@@ -56,7 +56,7 @@ def test_denoising_returns_what_it_did(pymeshlab, tmp_path, clean_and_noisy):
     check_types(
         outputs,
         {**DENOISE_OUTPUTS, "estimated_noise": float, "estimated_noise_low": float,
-         "estimated_noise_high": float, "resolved_noise_level": float,
+         "estimated_noise_high": float, "spikes": int, "resolved_noise_level": float,
          "resolved_noise_type": int})
     assert outputs["resolved_noise_type"] == KINDS_OF_NOISE.index("white")
     assert 0.05 < outputs["estimated_noise"] < 0.3

@@ -202,6 +202,8 @@ void print_result(const TriangleMesh& mesh, const DenoiseResult& result, double 
 	if (result.degenerate_faces > 0 || result.non_manifold_edges > 0)
 		std::cout << "  left out: " << result.degenerate_faces << " faces without area; "
 				  << result.non_manifold_edges << " non-manifold edges kept as they are\n";
+	if (result.spikes > 0)
+		std::cout << "  spikes: " << result.spikes << " lone vertices far out put back\n";
 	if (result.seam_vertices > 0)
 		std::cout << "  seams: " << result.seam_vertices
 				  << " vertices moved with another at the same place\n";
@@ -269,6 +271,7 @@ int run_denoise(const DenoiseArguments& arguments)
 			json["estimated_noise"] = result.estimated_noise;
 			json["estimated_noise_low"] = result.estimated_noise_low;
 			json["estimated_noise_high"] = result.estimated_noise_high;
+			json["spikes"] = result.spikes;
 		}
 		if (reference) {
 			json["noisy"] = to_json(*before);

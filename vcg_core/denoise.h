@@ -41,7 +41,7 @@ struct DenoiseOptions {
 	/// Adaptive: standard deviation of the noise along the normal before `strength` is applied to
 	/// it, in mean edge lengths of the surface below the noise (which lengthens them); where the
 	/// noise differs from place to place, the root mean square. One that is given is used however
-	/// small; below an estimate of 0.025 nothing is done.
+	/// small; below an estimate of 0.025 nothing is done but put back spikes.
 	std::optional<double> noise_level;
 	/// Rounds of normal filtering and vertex update (n_iter of the paper: 5).
 	std::optional<int> iterations;

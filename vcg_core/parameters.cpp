@@ -200,9 +200,9 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"Standard deviation of the noise along the surface normal, in mean edge lengths, "
 					"0 to 2; where it differs from place to place, the root mean square. -1 "
 					"estimates it from the vertices that may move, and does nothing where that is "
-					"below 0.025; a level that is set is used however small. More smooths more, less "
-					"keeps more detail. Set it where the estimate in the log is wrong. Adaptive "
-					"method only."))),
+					"below 0.025, but for spikes (lone vertices far out), which are put back; a level "
+					"that is set is used however small. More smooths more, less keeps more detail. "
+					"Set it where the estimate in the log is wrong. Adaptive method only."))),
 		bind(
 			&Options::iterations,
 			within(

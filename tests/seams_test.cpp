@@ -2,9 +2,8 @@
 #include "seams.h"
 
 #include "defects.h"
-#include "denoise.h"
+#include "method_support.h"
 #include "shapes.h"
-#include "step_fixture.h"
 #include "test_support.h"
 
 #include <algorithm>
@@ -60,12 +59,6 @@ TriangleMesh with_back(const TriangleMesh& mesh)
 		both.faces.push_back({first + face[0], first + face[2], first + face[1]});
 	}
 	return both;
-}
-
-DenoiseResult denoised(const TriangleMesh& mesh, const DenoiseOptions& options)
-{
-	Progress silent;
-	return denoise(mesh, options, silent);
 }
 
 } // namespace

@@ -753,12 +753,11 @@ void run_adaptive_method(
 	TriangleMesh mesh = workspace.mesh;
 	mesh.positions = std::move(spikes.positions);
 	const Workspace without(mesh, workspace.execution);
+	positions = mesh.positions;
 	run_for(estimate_noise(without, options), without, options, result, positions);
 	result.spikes = static_cast<Index>(spikes.vertices.size());
-	if (result.status == DenoiseResult::Status::NothingToDo) {
+	if (result.status == DenoiseResult::Status::NothingToDo)
 		result.status = DenoiseResult::Status::Done;
-		positions = mesh.positions;
-	}
 }
 
 } // namespace orthopoly

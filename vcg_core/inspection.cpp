@@ -5,7 +5,6 @@
 #include "seams.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace orthopoly {
 
@@ -31,9 +30,7 @@ Index count_duplicate_vertices(const TriangleMesh& mesh)
 		mesh.positions.end(),
 		std::back_inserter(points),
 		[](const Point& point) { return point.allFinite(); });
-	return count_repeated(points, [](const Point& a, const Point& b) {
-		return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
-	});
+	return count_repeated(points, comes_before);
 }
 
 Index count_duplicate_faces(const TriangleMesh& mesh)

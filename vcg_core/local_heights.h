@@ -32,6 +32,33 @@ private:
 	std::vector<Index> vertices_;
 };
 
+/// Goes through all vertices on all threads, with a collector of rings for each.
+class RingWorkers {
+public:
+	/// The workspace must outlive them.
+	explicit RingWorkers(const Workspace& workspace) :
+			workspace_(workspace),
+			rings_(static_cast<std::size_t>(workspace.execution.threads()), VertexRings(workspace))
+	{
+	}
+
+	/// Calls `body(vertex, rings)`. Throws Cancelled.
+	template<class Body>
+	void for_each_vertex(const Body& body)
+	{
+		constexpr Index GRAIN = 256;
+		workspace_.execution.parallel_for(
+			workspace_.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int worker) {
+				for (Index i = begin; i < end; ++i)
+					body(i, rings_[static_cast<std::size_t>(worker)]);
+			});
+	}
+
+private:
+	const Workspace& workspace_;
+	std::vector<VertexRings> rings_;
+};
+
 /// The surface that heights are measured from: that of the positions, smoothed until normals of a
 /// mesh with noise of half an edge length are steady. #V.
 std::vector<Point>

@@ -76,16 +76,13 @@ constexpr double DETAILED = 0.56;
 constexpr double UNEXPLAINED = 0.7;
 constexpr double EXPLAINED = 0.5;
 
-constexpr Index GRAIN = 256;
-
 /// The work on one mesh.
 class Repair {
 public:
 	Repair(const Workspace& workspace, const std::vector<Point>& positions) :
 			workspace_(workspace), positions_(positions), weights_(positions.size(), 1.0),
 			residuals_(positions.size(), 0.0), deviations_(positions.size(), 0.0),
-			flags_(positions.size(), 0),
-			rings_(static_cast<std::size_t>(workspace.execution.threads()), VertexRings(workspace))
+			flags_(positions.size(), 0), workers_(workspace)
 	{
 	}
 
@@ -135,7 +132,7 @@ private:
 				distances.push_back(std::abs(residuals_[i]));
 		}
 		const double furthest = FURTHEST * quantile(distances, 0.5);
-		for_each_vertex([&](Index i, VertexRings& rings) {
+		workers_.for_each_vertex([&](Index i, VertexRings& rings) {
 			if (flags_[at(i)] == 0)
 				return;
 			rings.collect(i, RINGS);
@@ -162,20 +159,10 @@ private:
 		});
 	}
 
-	template<class Body>
-	void for_each_vertex(const Body& body)
-	{
-		workspace_.execution.parallel_for(
-			workspace_.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int worker) {
-				for (Index i = begin; i < end; ++i)
-					body(i, rings_[static_cast<std::size_t>(worker)]);
-			});
-	}
-
 	// How far every vertex is above what the others around it say, in mean edge lengths.
 	void fit()
 	{
-		for_each_vertex([&](Index i, VertexRings& rings) {
+		workers_.for_each_vertex([&](Index i, VertexRings& rings) {
 			residuals_[at(i)] = 0;
 			const Point& normal = normals_[at(i)];
 			rings.collect(i, RINGS);
@@ -225,7 +212,7 @@ private:
 	// The deviations of the noise as the vertices around each show them, and from them the weights.
 	void weigh()
 	{
-		for_each_vertex([&](Index i, VertexRings& rings) {
+		workers_.for_each_vertex([&](Index i, VertexRings& rings) {
 			rings.collect(i, RINGS);
 			std::vector<double> sizes;
 			sizes.reserve(rings.vertices().size());
@@ -242,7 +229,7 @@ private:
 	void center()
 	{
 		std::vector<Point> moved = positions_;
-		for_each_vertex([&](Index i, VertexRings& rings) {
+		workers_.for_each_vertex([&](Index i, VertexRings& rings) {
 			if (flags_[at(i)] == 0 || workspace_.edges.irregular[at(i)] != 0)
 				return;
 			rings.collect(i, 1);
@@ -267,7 +254,7 @@ private:
 	std::vector<double> residuals_;
 	std::vector<double> deviations_;
 	std::vector<std::uint8_t> flags_;
-	std::vector<VertexRings> rings_;
+	RingWorkers workers_;
 };
 
 } // namespace

@@ -54,12 +54,7 @@ Point umbrella(
 	if (count == 0 || workspace.mesh.is_fixed(vertex))
 		return here;
 	const bool on_boundary = workspace.edges.irregular[at(vertex)] != 0;
-	Point sum = Point::Zero();
-	const Index* const end = workspace.vertex_faces.end(vertex);
-	for (const Index* it = workspace.vertex_faces.begin(vertex); it != end; ++it) {
-		for (const Index corner : workspace.mesh.faces[at(*it)])
-			sum += positions[at(corner)] - here;
-	}
+	Point sum = sum_of_ways_around(workspace, positions, vertex);
 	// Neighbours on one side only would pull the outline inwards.
 	if (on_boundary) {
 		const Point normal = cross_product_around(workspace, positions, vertex);

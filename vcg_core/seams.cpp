@@ -10,11 +10,6 @@ namespace orthopoly {
 
 namespace {
 
-bool comes_before(const Point& a, const Point& b)
-{
-	return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-}
-
 // For every vertex on an open edge the first such vertex at its place, for the others -1; empty
 // where no two are at the same.
 std::vector<Index>

@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -57,16 +56,13 @@ constexpr int SWEEPS = 2;
 constexpr double LEAST_SHARE = 5e-4;
 constexpr std::size_t FEWEST_SPIKES = 8;
 
-constexpr Index GRAIN = 256;
-
 /// The work on one mesh.
 class Search {
 public:
 	Search(const Workspace& workspace, double noise) :
 			workspace_(workspace), least_(std::max(FAR, BEYOND_NOISE * noise)),
 			positions_(workspace.mesh.positions), moves_(positions_.size(), Point::Zero()),
-			is_spike_(positions_.size(), 0),
-			rings_(static_cast<std::size_t>(workspace.execution.threads()), VertexRings(workspace))
+			workers_(workspace)
 	{
 	}
 
@@ -79,15 +75,14 @@ public:
 				if (moves_[i].isZero(0))
 					continue;
 				positions_[i] += moves_[i];
-				is_spike_[i] = 1;
 				any = true;
 			}
 			if (!any)
 				break;
 		}
 		Spikes spikes;
-		for (std::size_t i = 0; i < is_spike_.size(); ++i) {
-			if (is_spike_[i] != 0)
+		for (std::size_t i = 0; i < positions_.size(); ++i) {
+			if (is_spike(i))
 				spikes.vertices.push_back(static_cast<Index>(i));
 		}
 		const auto least = LEAST_SHARE * static_cast<double>(positions_.size());
@@ -110,34 +105,15 @@ private:
 		double residual;
 	};
 
-	template<class Body>
-	void for_each_vertex(const Body& body)
-	{
-		workspace_.execution.parallel_for(
-			workspace_.mesh.vertex_count(), GRAIN, [&](Index begin, Index end, int worker) {
-				for (Index i = begin; i < end; ++i)
-					body(i, rings_[static_cast<std::size_t>(worker)]);
-			});
-	}
-
-	// From a vertex to the middle of its neighbours, each weighed by the faces shared.
-	Point way_to_middle(Index vertex) const
-	{
-		const IndexLists& around = workspace_.vertex_faces;
-		const Point& place = positions_[at(vertex)];
-		Point sum = Point::Zero();
-		for (const Index* face = around.begin(vertex); face != around.end(vertex); ++face) {
-			for (const Index corner : workspace_.mesh.faces[at(*face)])
-				sum += positions_[at(corner)] - place;
-		}
-		return sum / (2.0 * std::max(1, around.size(vertex)));
-	}
+	bool is_spike(std::size_t i) const { return positions_[i] != workspace_.mesh.positions[i]; }
 
 	void measure_ways()
 	{
 		ways_.resize(positions_.size());
 		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
-			ways_[i] = way_to_middle(static_cast<Index>(i));
+			const auto vertex = static_cast<Index>(i);
+			const double count = std::max(1, workspace_.vertex_faces.size(vertex));
+			ways_[i] = sum_of_ways_around(workspace_, positions_, vertex) / (2 * count);
 		});
 	}
 
@@ -146,7 +122,7 @@ private:
 	std::vector<Point> without_peaks()
 	{
 		std::vector<Point> result = positions_;
-		for_each_vertex([&](Index i, VertexRings& rings) {
+		workers_.for_each_vertex([&](Index i, VertexRings& rings) {
 			const double distance = ways_[at(i)].norm();
 			if (!(distance > SUSPICIOUS * least_ * workspace_.mean_edge_length))
 				return;
@@ -174,7 +150,7 @@ private:
 			const double length = crosses_[i].norm();
 			offsets_[i] = length > 0 ? std::abs(ways_[i].dot(crosses_[i])) / length : 0;
 		});
-		for_each_vertex([&](Index i, VertexRings& rings) {
+		workers_.for_each_vertex([&](Index i, VertexRings& rings) {
 			moves_[at(i)] = Point::Zero();
 			if (offsets_[at(i)] > SUSPICIOUS * least_ * edges_[at(i)] &&
 				!workspace_.mesh.is_fixed(i) && workspace_.edges.irregular[at(i)] == 0)
@@ -188,7 +164,7 @@ private:
 		measure_ways();
 		const std::vector<Point> before = positions_;
 		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
-			if (is_spike_[i] == 0 || !folds(before, static_cast<Index>(i)))
+			if (!is_spike(i) || !folds(before, static_cast<Index>(i)))
 				return;
 			const Point normal = crosses_[i].normalized();
 			positions_[i] += ways_[i] - ways_[i].dot(normal) * normal;
@@ -206,8 +182,10 @@ private:
 
 	void examine(Index vertex, VertexRings& rings)
 	{
-		rings.collect(vertex, RINGS);
 		const std::vector<Index>& ring = rings.vertices();
+		rings.collect(vertex, 1);
+		const std::size_t neighbors = ring.size() - 1;
+		rings.collect(vertex, RINGS);
 		if (ring.size() <= FEWEST_OTHERS)
 			return;
 		std::vector<double> sizes;
@@ -222,9 +200,6 @@ private:
 		if (turns)
 			return;
 		const double edge = edges_[at(vertex)];
-		rings.collect(vertex, 1);
-		const std::size_t neighbors = rings.vertices().size() - 1;
-		rings.collect(vertex, RINGS);
 		std::vector<Node> nodes = nodes_around(ring, normal, edge);
 		double expected = 0;
 		if (!fit(nodes, expected))
@@ -306,13 +281,12 @@ private:
 	double least_;
 	std::vector<Point> positions_;
 	std::vector<Point> moves_;
-	std::vector<std::uint8_t> is_spike_;
-	std::vector<VertexRings> rings_;
+	RingWorkers workers_;
 	// Of the surface below the heights.
 	std::vector<Point> smooth_;
 	std::vector<Point> crosses_;
 	std::vector<double> edges_;
-	// From each vertex to the middle of its neighbours.
+	// From each vertex to the middle of its neighbours, each weighed by the faces shared.
 	std::vector<Point> ways_;
 	// How far each vertex is above or below the middle of its neighbours.
 	std::vector<double> offsets_;

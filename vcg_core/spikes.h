@@ -23,8 +23,8 @@ struct Spikes {
 /// each weighed by how well it agrees (iteratively reweighted least squares with the weights of
 /// Geman and McClure). It is a spike where it is off by a third of the edges around, by more than
 /// the noise, and by many times what most of these others are: corners and edges have others as far
-/// off beside them. Fixed vertices and those on open edges stay, and all do where
-/// there are no more than a clean mesh may have on purpose.
+/// off beside them. Fixed vertices and those on open edges stay, and all do where there are no more
+/// than a clean mesh may have on purpose.
 ///
 /// @param noise the level, in mean edge lengths
 ///

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -67,6 +68,12 @@ inline Point face_cross_product(const std::vector<Point>& positions, const Face&
 		return positions[static_cast<std::size_t>(face[k])];
 	};
 	return (corner(1) - corner(0)).cross(corner(2) - corner(0));
+}
+
+/// An order of points, by x, then y, then z.
+inline bool comes_before(const Point& a, const Point& b)
+{
+	return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
 /// False where a face names a vertex twice.

@@ -42,6 +42,21 @@ Point cross_product_around(
 std::vector<Point>
 cross_products_around(const Workspace& workspace, const std::vector<Point>& positions);
 
+/// Sum of the ways from a vertex to the corners of the faces around it: a neighbour counts once for
+/// each face shared.
+inline Point
+sum_of_ways_around(const Workspace& workspace, const std::vector<Point>& positions, Index vertex)
+{
+	const Point& here = positions[at(vertex)];
+	Point sum = Point::Zero();
+	const Index* const end = workspace.vertex_faces.end(vertex);
+	for (const Index* face = workspace.vertex_faces.begin(vertex); face != end; ++face) {
+		for (const Index corner : workspace.mesh.faces[at(*face)])
+			sum += positions[at(corner)] - here;
+	}
+	return sum;
+}
+
 /// Sum of the cross products of the faces beside a face, from its own and those `sums` around all
 /// vertices. Neighbours across an edge count twice.
 inline Point

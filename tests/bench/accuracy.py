@@ -223,26 +223,28 @@ def extract_from_volume(case, seed, target):
 	save(*igl.remove_unreferenced(positions, largest)[:2], target)
 
 
-def subdivide(path, target):
-	"""Four faces of each."""
+def apply_meshlab(source, target, name, **parameters):
+	"""Writes what a filter of MeshLab makes of a mesh."""
 	import pymeshlab
 
 	with LOADING:
 		meshes = pymeshlab.MeshSet()
-		meshes.load_new_mesh(str(path))
-		meshes.meshing_surface_subdivision_midpoint(
-			iterations=1, threshold=pymeshlab.PercentageValue(0))
+		meshes.load_new_mesh(str(source))
+		meshes.apply_filter(name, **parameters)
 		meshes.save_current_mesh(str(target))
 
 
-def simplify(path, faces):
+def simplify_finer(case, kind, target):
+	"""Noise on four faces of each, simplified to as many as before."""
 	import pymeshlab
 
-	with LOADING:
-		meshes = pymeshlab.MeshSet()
-		meshes.load_new_mesh(str(path))
-		meshes.meshing_decimation_quadric_edge_collapse(targetfacenum=faces)
-		meshes.save_current_mesh(str(path))
+	apply_meshlab(
+		case.truth, target, "meshing_surface_subdivision_midpoint",
+		iterations=1, threshold=pymeshlab.PercentageValue(0))
+	tools.orthopoly("noise", target, target, "--sigma", case.sigma, *kind)
+	apply_meshlab(
+		target, target, "meshing_decimation_quadric_edge_collapse",
+		targetfacenum=len(load(case.truth)[1]))
 
 
 def make_noise(case, target):
@@ -254,13 +256,11 @@ def make_noise(case, target):
 	if case.kind == "volume":
 		extract_from_volume(case, seed, target)
 		return
-	source = case.truth
+	kind += ["--seed", seed]
 	if case.kind == "simplified":
-		source = target
-		subdivide(case.truth, target)
-	tools.orthopoly("noise", source, target, "--sigma", case.sigma, *kind, "--seed", seed)
-	if case.kind == "simplified":
-		simplify(target, len(load(case.truth)[1]))
+		simplify_finer(case, kind, target)
+		return
+	tools.orthopoly("noise", case.truth, target, "--sigma", case.sigma, *kind)
 	if case.kind in ("uneven", "view"):
 		keep_part_of_noise(case, target)
 

@@ -99,8 +99,8 @@ std::string describe_nothing_to_do(const DenoiseOptions& options)
 		return "noise_level is " + in_words(*options.noise_level) +
 			   ", so there is nothing to remove and the mesh is left as it is; raise noise_level, or set "
 			   "it to -1 to have the noise estimated";
-	return "there is no noise worth removing, so the mesh is left as it is; set noise_level to denoise "
-		   "it all the same";
+	return "there is no noise worth removing, so the mesh is left as it is; if it is rippled over "
+		   "several edges, set noise_type to scanner; set noise_level to denoise it all the same";
 }
 
 // How far the noise differs from place to place; nothing where it does not.

@@ -550,6 +550,14 @@ TEST_CASE("The noise of volumes is found and treated as such", "[adaptive_method
 		CHECK(found < 0.5 * angle_after(mesh, NoiseType::White, truth));
 		CHECK(found < 0.3 * measure(mesh, truth).mean_angle);
 	}
+	for (const double noise : {0.15, 0.3}) {
+		CAPTURE(noise);
+		const TriangleMesh mesh = ball_from_points(radius, 50, noise);
+		CHECK(run(mesh).resolved.noise_type == NoiseType::Scanner);
+		const TriangleMesh truth = truth_of(mesh);
+		CHECK(
+			angle_after(mesh, NoiseType::Automatic, truth) < 0.5 * measure(mesh, truth).mean_angle);
+	}
 	const TriangleMesh clean = ball_of_volume(radius, 50, 0);
 	CHECK(run(clean).resolved.noise_type == NoiseType::White);
 	CHECK(same_bits(run(clean).positions, clean.positions));

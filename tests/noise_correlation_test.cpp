@@ -91,6 +91,37 @@ TEST_CASE("The noise of a volume is found", "[noise_correlation]")
 	}
 }
 
+TEST_CASE("The noise of a reconstruction from points is found", "[noise_correlation]")
+{
+	for (const double noise : {0.15, 0.3}) {
+		CAPTURE(noise);
+		const TriangleMesh mesh = ball_from_points(0.7, 60, noise);
+		const NoiseCorrelation found = measured(mesh);
+		CHECK(found.edge_correlation > 0.25);
+		CHECK(found.middle_growth < 1.6);
+		CHECK(found.middle_growth < found.growth);
+		CHECK(found.certainty() > 0.8);
+		// Its vertices moved to where moving least squares have the surface.
+		const NoiseCorrelation moved = measured(noisy(mesh, 0.01, NoiseDirection::Random));
+		CHECK(moved.voxels.on < 0.08);
+		CHECK(moved.certainty() > 0.6);
+	}
+}
+
+TEST_CASE(
+	"What is measured in any case is the same where it is told by itself", "[noise_correlation]")
+{
+	const TriangleMesh ball = ball_of_volume(0.7, 40, 0.3);
+	const TriangleMesh sphere = with_correlated_noise(find_recipe("sphere").make(4000), 0.4);
+	const auto narrow_level = [](const TriangleMesh& mesh, bool in_any_case) {
+		const StepFixture f(mesh);
+		return measure_noise_correlation(f.workspace, mesh.positions, in_any_case).narrow_level;
+	};
+	CHECK(narrow_level(ball, true) == narrow_level(ball, false));
+	CHECK(narrow_level(sphere, false) == 0);
+	CHECK(narrow_level(sphere, true) > 0.1);
+}
+
 TEST_CASE("A volume without noise of its own has none that goes together", "[noise_correlation]")
 {
 	const TriangleMesh clean = ball_of_volume(0.7, 60, 0);
@@ -161,6 +192,19 @@ TEST_CASE("Size, place, turn and order do not matter to the kind of noise", "[no
 		check(measured(with_positions(mesh, each(mesh.positions, there))));
 	}
 	check(measured(Renumbered(mesh).mesh));
+}
+
+TEST_CASE("Coarse boxes are no volumes", "[noise_correlation]")
+{
+	// Edges everywhere look like noise.
+	for (const std::string name : {"cube", "part", "thin_plate"}) {
+		for (const int faces : {600, 1500, 4000}) {
+			CAPTURE(name, faces);
+			const TriangleMesh clean = find_recipe(name).make(faces);
+			CHECK(measured(clean).certainty() == 0);
+			CHECK(measured(noisy(clean, 0.1)).certainty() == 0);
+		}
+	}
 }
 
 TEST_CASE("A mesh too small to tell is white", "[noise_correlation]")

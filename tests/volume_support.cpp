@@ -5,7 +5,9 @@
 #include "vcg_adapter.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
+#include <vector>
 // Without their assertions these leave paths that GCC takes for reachable.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
@@ -52,6 +54,38 @@ TriangleMesh ball_of_volume(double radius, int cubes, double noise)
 {
 	const auto distance = [&](const Point& p) { return p.norm() - radius; };
 	return surface_of(distance, cubes, noise);
+}
+
+TriangleMesh ball_from_points(double radius, int cubes, double noise)
+{
+	struct Wave {
+		Point vector;
+		double phase;
+	};
+	constexpr int WAVES = 200;
+	std::mt19937 generator(1);
+	std::normal_distribution<double> normal;
+	std::uniform_real_distribution<double> uniform(0, 1);
+	const double cube = 2.0 / cubes;
+	std::vector<Wave> waves;
+	for (int k = 0; k < WAVES; ++k) {
+		Point direction;
+		for (double& x : direction)
+			x = normal(generator);
+		const double length = (3 + 3 * uniform(generator)) * cube;
+		waves.push_back(
+			{2 * M_PI / length * direction.normalized(), 2 * M_PI * uniform(generator)});
+	}
+	const double height = noise * cube * std::sqrt(2.0 / WAVES);
+	const auto distance = [&](const Point& p) {
+		double sum = p.norm() - radius;
+		if (std::abs(sum) < 4 * cube) {
+			for (const Wave& wave : waves)
+				sum += height * std::cos(wave.vector.dot(p) + wave.phase);
+		}
+		return sum;
+	};
+	return surface_of(distance, cubes, 0);
 }
 
 } // namespace orthopoly

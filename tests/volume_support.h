@@ -16,4 +16,9 @@ surface_of(const std::function<double(const Point&)>& distance, int cubes, doubl
 /// The same of a ball of that radius.
 TriangleMesh ball_of_volume(double radius, int cubes, double noise);
 
+/// A ball of that radius whose surface goes up and down as that of one reconstructed from noisy
+/// points: a random field of waves of three to six cubes.
+/// @param noise standard deviation of the surface, in cubes
+TriangleMesh ball_from_points(double radius, int cubes, double noise);
+
 } // namespace orthopoly

@@ -14,10 +14,15 @@ using namespace orthopoly;
 
 namespace {
 
-double share_of(const TriangleMesh& mesh, int threads = 1)
+VoxelShares shares_of(const TriangleMesh& mesh, int threads = 1)
 {
 	const StepFixture f(mesh, threads);
-	return voxel_share(f.workspace, mesh.positions);
+	return voxel_shares(f.workspace, mesh.positions);
+}
+
+double share_of(const TriangleMesh& mesh, int threads = 1)
+{
+	return shares_of(mesh, threads).on;
 }
 
 // A block with a hole through it.
@@ -66,6 +71,47 @@ TEST_CASE("Other noisy meshes do not lie on a grid", "[voxel_grid]")
 	}
 	// Noise of every vertex takes a volume's surface off its grid.
 	CHECK(share_of(noisy(ball_of_volume(0.7, 30, 0), 0.05, direction)) < 0.04);
+}
+
+TEST_CASE("Surfaces whose vertices were moved off the grid lie near it", "[voxel_grid]")
+{
+	const TriangleMesh mesh = ball_of_volume(0.7, 60, 0.3);
+	CHECK(shares_of(mesh).near >= shares_of(mesh).on);
+	const VoxelShares moved = shares_of(noisy(mesh, 0.01, NoiseDirection::Random));
+	CHECK(moved.on < 0.08);
+	CHECK(moved.near > 0.08);
+	CHECK(shares_of(noisy(mesh, 0.3, NoiseDirection::Random)).near < 0.05);
+	for (const std::string name : {"sphere", "torus", "part", "height_field"}) {
+		CAPTURE(name);
+		CHECK(shares_of(noisy(find_recipe(name).make(4000), 0.2)).near < 0.06);
+	}
+}
+
+TEST_CASE("What has edges longer than cubes is none of them", "[voxel_grid]")
+{
+	// A box in cells of all widths, as what is drawn along the axes has them.
+	TriangleMesh box = find_recipe("cube").make(6000);
+	CHECK(share_of(box) > 0.2);
+	for (Point& p : box.positions)
+		p = p.array().sign() * p.array().abs().pow(6);
+	CHECK(share_of(box) == 0);
+}
+
+TEST_CASE("What lies on a grid is what may move, in what lies there all in all", "[voxel_grid]")
+{
+	const TriangleMesh clean = ball_of_volume(0.7, 60, 0);
+	const TriangleMesh off = noisy(clean, 0.1, NoiseDirection::Random);
+	TriangleMesh mesh = clean;
+	mesh.fixed.assign(mesh.positions.size(), 0);
+	CHECK(share_of(mesh) == share_of(clean));
+	for (const bool moving_off : {false, true}) {
+		for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+			const bool moving = mesh.positions[i].z() > 0.4;
+			mesh.fixed[i] = moving ? 0 : 1;
+			mesh.positions[i] = moving == moving_off ? off.positions[i] : clean.positions[i];
+		}
+		CHECK(share_of(mesh) < 0.08);
+	}
 }
 
 TEST_CASE("A grid in two directions is none of cubes", "[voxel_grid]")

@@ -122,12 +122,15 @@ constexpr int FACES_PER_HEIGHT_STRUCTURE = 4;
 constexpr double SPREAD = 0.0033;
 constexpr double DISAGREEMENT = 0.1;
 
-// Noise correlated over several edges: smoothing that reaches beyond the correlation, structures
-// that may be wide but are of strictly similar directions, which are steady after it, and a
-// selection that allows for each independent value being shared by some twenty faces; by seven in
+// Noise correlated over several edges: more smoothing from one noise to the other, where guides are
+// no longer steady without, structures that may be wide but are of strictly similar directions, and
+// a selection that allows for each independent value being shared by some twenty faces; by seven in
 // a volume, where noise goes together over a cube or two. Heights are no better known than normals
 // then. Where it is not certain that the noise is of that kind, everything lies between.
-constexpr double SCANNER_PAIRS = 10;
+constexpr double LEAST_SCANNER_PAIRS = 3;
+constexpr double LEAST_SCANNER_PAIRS_NOISE = 0.15;
+constexpr double MOST_SCANNER_PAIRS = 10;
+constexpr double MOST_SCANNER_PAIRS_NOISE = 0.25;
 constexpr int SCANNER_SMALLEST_RING = 3;
 constexpr int VOXEL_SMALLEST_RING = 2;
 constexpr int SCANNER_LARGEST_RING = 8;
@@ -209,6 +212,14 @@ double prefilter_pairs_for(double noise)
 			(PREFILTER_BASE_PAIRS + PREFILTER_PAIRS_PER_NOISE * noise));
 }
 
+// The same for noise correlated over several edges.
+double scanner_pairs_for(double noise)
+{
+	return LEAST_SCANNER_PAIRS +
+		   way_between(LEAST_SCANNER_PAIRS_NOISE, MOST_SCANNER_PAIRS_NOISE, noise) *
+			   (MOST_SCANNER_PAIRS - LEAST_SCANNER_PAIRS);
+}
+
 // How much of its way the first of two iterations goes.
 double guiding_for(double noise)
 {
@@ -237,7 +248,7 @@ struct Plan {
 	/// In mean edge lengths, strength included.
 	double noise = 0;
 	/// Taubin pairs of the prefilter where noise is correlated.
-	double scanner_pairs = SCANNER_PAIRS;
+	double scanner_pairs = MOST_SCANNER_PAIRS;
 	int iterations = ITERATIONS;
 	/// How much of their way the iterations before the last go, 0 to 1.
 	double guiding = 1;
@@ -280,7 +291,8 @@ Plan plan_for(const DenoiseOptions& options, double noise, const Correlation& ki
 	const double correlation = kind.share;
 	plan.noise = noise;
 	plan.correlation = correlation;
-	plan.scanner_pairs *= strength_factor(options.strength);
+	const double strength = strength_factor(options.strength);
+	plan.scanner_pairs = strength * scanner_pairs_for(noise / strength);
 	if (!plan.is_mostly_white())
 		plan.vertex_iterations = SCANNER_VERTEX_ITERATIONS;
 	plan.cos_threshold = between(cos_threshold_for(noise), SCANNER_THRESHOLD, correlation);
@@ -689,9 +701,9 @@ Noise estimate_noise(const Workspace& workspace, const DenoiseOptions& options)
 	Noise noise;
 	double rough = levels.rough;
 	if (options.noise_type != NoiseType::White) {
-		const NoiseCorrelation measured =
-			measure_noise_correlation(workspace, workspace.mesh.positions);
 		const bool scanner = options.noise_type == NoiseType::Scanner;
+		const NoiseCorrelation measured =
+			measure_noise_correlation(workspace, workspace.mesh.positions, scanner);
 		noise.correlation = {scanner ? 1 : measured.certainty(), measured.is_of_voxels()};
 		// What a polynomial over two rings follows of such noise, one over more does not.
 		rough = std::max(rough, measured.narrow_level);
@@ -699,8 +711,9 @@ Noise estimate_noise(const Workspace& workspace, const DenoiseOptions& options)
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
 	if (noise.correlation.share == 0)
 		noise.uneven = levels.uneven;
-	// Beside a clean part noise looks like outliers.
-	if (noise.correlation.share < 1 && noise.uneven.certainty < 0.5)
+	// Beside a clean part noise looks like outliers, and so does noise that is strong and
+	// correlated.
+	if (noise.correlation.share < 0.5 && noise.uneven.certainty < 0.5)
 		noise.outliers = repair_outliers(workspace, levels);
 	if (noise.outliers.share > 0)
 		noise.uneven = {};

@@ -4,7 +4,6 @@
 #include "interpolation.h"
 #include "local_heights.h"
 #include "sampling.h"
-#include "voxel_grid.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -28,23 +27,28 @@ struct Ramp {
 // visible half of a closed model hardly less than 0.4, and mostly 0.6.
 constexpr Ramp ONE_VIEW = {0.40, 0.25};
 
-// Share of the edges that are on a grid. Marching cubes leave 0.19 to 0.4, other noisy meshes less
-// than 0.04.
+// Share of the edges that are on a grid, and of those near it. Marching cubes leave 0.19 to 0.4 on
+// it; other noisy meshes have less than 0.04.
 constexpr Ramp ON_VOXELS = {0.08, 0.14};
+constexpr Ramp NEAR_VOXELS = {0.05, 0.08};
 
 // Correlation along edges over the flattest places. White noise gives 0.05 by chance and curvature,
 // a depth camera 0.25, white noise smoothed by a few umbrella steps 0.16 to 0.5.
 constexpr Ramp CORRELATED = {0.13, 0.20};
+
+// The same where vertices are as marching cubes left them, so that none has noise of its own: 0.12
+// to 0.5.
+constexpr Ramp CORRELATED_ON_VOXELS = {0.06, 0.12};
 
 // Residual of wide polynomials over that of narrow ones. Noise correlated over a few edges
 // gives 1.1 to 1.8; waves and edges of the surface itself 2 and far more, but so does smoother
 // noise.
 constexpr Ramp SLOW_GROWTH = {2.2, 1.8};
 
-// The same of noise in a volume, correlated over one or two edges: 1.1 to 1.7 where it is 0.2 of a
-// cube or more, clean volumes 1.8 and mostly far more. The ramp is long because detail as small as
-// the cubes lies within it, of which a half-way treatment takes less.
-constexpr Ramp SLOW_GROWTH_OF_VOXELS = {2.2, 1.4};
+// Residual of middle polynomials over that of narrow ones, of noise in a volume: 1.1 to 1.6 where
+// it is worth removing, whether it is correlated over one edge (white noise in a volume) or four
+// (reconstructions of points), clean volumes 1.6 and mostly more.
+constexpr Ramp SLOW_GROWTH_OF_VOXELS = {1.7, 1.6};
 
 // What wide polynomials leave at an ordinary place over what they leave in the flattest ones. Where
 // it is much more, structures that wide would take away more of the surface than of the noise.
@@ -53,13 +57,18 @@ constexpr Ramp EVEN = {1.9, 1.5};
 // Strength from which correlated noise is worse than the loss of detail in wide structures.
 constexpr Ramp STRONG = {0.10, 0.25};
 
-// The same of a volume: it does not take structures that wide there.
-constexpr Ramp STRONG_IN_VOXELS = {0.06, 0.15};
+// The same of a volume, by narrow polynomials: structures are not that wide there. Clean smooth
+// ones leave up to 0.02. Noise of more than half an edge over several of them would leave no
+// surface to extract; coarse drawn boxes have so much.
+constexpr Ramp STRONG_IN_VOXELS = {0.025, 0.045};
+constexpr Ramp NOT_TOO_STRONG = {0.55, 0.48};
 
-// Rings of vertices of the narrow and the wide polynomials, and of those whose residuals are
-// correlated: wide enough to leave what is correlated over several edges in the residual.
+// Rings of vertices of the narrow, the middle and the wide polynomials, and of those whose
+// residuals are correlated: wide enough to leave what is correlated over several edges in the
+// residual.
 constexpr int NARROW_RINGS = 4;
-constexpr int MIDDLE_RINGS = 5;
+constexpr int CORRELATED_RINGS = 5;
+constexpr int MIDDLE_RINGS = 6;
 constexpr int WIDE_RINGS = 8;
 
 // The share of places that counts as the flattest.
@@ -69,13 +78,14 @@ constexpr double FLATTEST = 0.2;
 constexpr Index SAMPLES = 1500;
 
 // But a mesh that has fewer has no place where the wide ones do not see everything.
-constexpr std::size_t FEWEST_SAMPLES = 100;
+constexpr std::size_t FEWEST_SAMPLES = 600;
 
 constexpr Index GRAIN = 32;
 
 /// What is measured around a vertex; negative variances where there is no polynomial.
 struct Residuals {
 	double narrow = -1;
+	double correlated = -1;
 	double middle = -1;
 	double wide = -1;
 	double correlation = 0;
@@ -109,24 +119,27 @@ double irregularity_of_view(const std::vector<Point>& positions, const std::vect
 
 double NoiseCorrelation::certainty() const
 {
-	const double camera =
-		ONE_VIEW(view_irregularity) * SLOW_GROWTH(growth) * EVEN(unevenness) * STRONG(level);
-	const double volume = is_of_voxels() * SLOW_GROWTH_OF_VOXELS(growth) * STRONG_IN_VOXELS(level);
-	return CORRELATED(edge_correlation) * std::max(camera, volume);
+	const double camera = ONE_VIEW(view_irregularity) * EVEN(unevenness) * STRONG(level);
+	const double volume = SLOW_GROWTH_OF_VOXELS(middle_growth) * STRONG_IN_VOXELS(narrow_level) *
+						  NOT_TOO_STRONG(narrow_level);
+	const double on_voxels = ON_VOXELS(voxels.on) * volume * CORRELATED_ON_VOXELS(edge_correlation);
+	// What is only near a grid may be a coarse box with white noise, that its edges grow in.
+	const double elsewhere = std::max(camera, NEAR_VOXELS(voxels.near) * volume);
+	return std::max(on_voxels, elsewhere * CORRELATED(edge_correlation) * SLOW_GROWTH(growth));
 }
 
 double NoiseCorrelation::is_of_voxels() const
 {
-	return ON_VOXELS(voxel_share);
+	return std::max(ON_VOXELS(voxels.on), NEAR_VOXELS(voxels.near));
 }
 
-NoiseCorrelation
-measure_noise_correlation(const Workspace& workspace, const std::vector<Point>& positions)
+NoiseCorrelation measure_noise_correlation(
+	const Workspace& workspace, const std::vector<Point>& positions, bool in_any_case)
 {
 	NoiseCorrelation result;
 	result.view_irregularity = irregularity_of_view(positions, workspace.mesh.faces);
-	result.voxel_share = voxel_share(workspace, positions);
-	if (ONE_VIEW(result.view_irregularity) == 0 && result.is_of_voxels() == 0)
+	result.voxels = voxel_shares(workspace, positions);
+	if (!in_any_case && ONE_VIEW(result.view_irregularity) == 0 && result.is_of_voxels() == 0)
 		return result;
 	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
 	const std::vector<Index> sample = sample_vertices(workspace, positions, SAMPLES);
@@ -141,9 +154,10 @@ measure_noise_correlation(const Workspace& workspace, const std::vector<Point>& 
 				const Index vertex = sample[static_cast<std::size_t>(k)];
 				Residuals& residuals = found[static_cast<std::size_t>(k)];
 				residuals.narrow = deviation(local, vertex, NARROW_RINGS);
-				residuals.middle = deviation(local, vertex, MIDDLE_RINGS);
-				if (residuals.middle >= 0)
+				residuals.correlated = deviation(local, vertex, CORRELATED_RINGS);
+				if (residuals.correlated >= 0)
 					residuals.correlation = local.edge_correlation();
+				residuals.middle = deviation(local, vertex, MIDDLE_RINGS);
 				residuals.wide = deviation(local, vertex, WIDE_RINGS);
 			}
 		});
@@ -152,7 +166,7 @@ measure_noise_correlation(const Workspace& workspace, const std::vector<Point>& 
 			found.begin(),
 			found.end(),
 			[](const Residuals& r) {
-				return std::min({r.narrow, r.middle, r.wide}) < 0;
+				return std::min({r.narrow, r.correlated, r.middle, r.wide}) < 0;
 			}),
 		found.end());
 	if (found.size() < FEWEST_SAMPLES)
@@ -166,12 +180,12 @@ measure_noise_correlation(const Workspace& workspace, const std::vector<Point>& 
 		return quantile(values, share);
 	};
 	const double narrow = at_share(&Residuals::narrow, FLATTEST);
-	const double middle = at_share(&Residuals::middle, FLATTEST);
+	const double correlated = at_share(&Residuals::correlated, FLATTEST);
 	const double wide = at_share(&Residuals::wide, FLATTEST);
 	double sum = 0;
 	double count = 0;
 	for (const Residuals& residuals : found) {
-		if (residuals.middle <= middle) {
+		if (residuals.correlated <= correlated) {
 			sum += residuals.correlation;
 			count += 1;
 		}
@@ -180,6 +194,7 @@ measure_noise_correlation(const Workspace& workspace, const std::vector<Point>& 
 	if (!(narrow > 0 && wide > 0))
 		return result;
 	result.growth = wide / narrow;
+	result.middle_growth = at_share(&Residuals::middle, FLATTEST) / narrow;
 	result.unevenness = at_share(&Residuals::wide, 0.5) / wide;
 	const double edge = mean_edge_length(workspace, smooth);
 	result.level = wide / edge;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "voxel_grid.h"
 #include "workspace.h"
 
 #include <vector>
@@ -18,19 +19,21 @@ struct NoiseCorrelation {
 	/// they are most alike, over their mean: 0 for a regular grid seen from one side, 1 for a
 	/// closed surface. Noise along the view, however strong, changes nothing here.
 	double view_irregularity = 1;
-	/// How much of the mesh lies on a grid of cubes (see `orthopoly::voxel_share`).
-	double voxel_share = 0;
+	/// How much of the mesh lies on a grid of cubes.
+	VoxelShares voxels = {};
 	/// Of the residuals of neighbours to height polynomials, less what white noise gives; over the
 	/// flattest places, where detail contributes least. 0 where not measured.
 	double edge_correlation = 0;
 	/// Residual deviation of wide polynomials over that of narrow ones in the flattest places.
 	/// Detail makes it large; white noise 1. 0 where not measured.
 	double growth = 0;
+	/// The same of polynomials between these over narrow ones, which see less of the surface.
+	double middle_growth = 0;
 	/// Residual deviation of wide polynomials at an ordinary place over that in the flattest ones:
 	/// 1 where the noise is all there is. 0 where not measured.
 	double unevenness = 0;
 	/// Residual deviations of wide and of narrow polynomials in the flattest places, in mean edge
-	/// lengths.
+	/// lengths. 0 where not measured.
 	double level = 0;
 	double narrow_level = 0;
 
@@ -41,8 +44,8 @@ struct NoiseCorrelation {
 };
 
 /// Measures the noise of a mesh. Where it comes neither from a depth camera nor from a volume, the
-/// rest is left out. O(#V) time.
-NoiseCorrelation
-measure_noise_correlation(const Workspace& workspace, const std::vector<Point>& positions);
+/// rest is left out, unless it is wanted in any case. O(#V) time.
+NoiseCorrelation measure_noise_correlation(
+	const Workspace& workspace, const std::vector<Point>& positions, bool in_any_case = false);
 
 } // namespace orthopoly

@@ -184,10 +184,11 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"Kind of noise",
 					"white: every vertex is off by itself, as in most tests and many scans. scanner: "
 					"the errors of neighbouring vertices go together over several edges, as depth "
-					"cameras and volumes leave them: a rippled surface; much wider surroundings are "
-					"used. auto takes it for white unless the mesh is a single view of a depth camera "
-					"or was extracted from a volume, and its noise clearly goes together; set scanner "
-					"for such noise on other meshes. Adaptive method only."))),
+					"cameras, volumes and surface reconstructions leave them: a rippled surface; much "
+					"wider surroundings are used. auto takes it for white unless the mesh is a single "
+					"view of a depth camera or was extracted from a volume, as reconstructions are, "
+					"and its noise clearly goes together; set scanner for such noise on other meshes. "
+					"Adaptive method only."))),
 		bind(
 			&Options::noise_level,
 			within(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "voxel_grid.h"
 
+#include "interpolation.h"
 #include "sampling.h"
 
 #include <Eigen/Eigenvalues>
@@ -37,36 +38,47 @@ constexpr std::size_t CANDIDATES = 12;
 // Cosines to an axis of the edges that it is found by, one after the other.
 constexpr std::array<double, 4> NARROWING = {0.02, 0.005, 0.002, 0.002};
 
-// Cosine to an axis up to which an edge is across to it, and axes to each other: single precision
-// leaves 5e-4 in a grid of a thousand cubes a side.
+// Cosines to an axis up to which an edge is across to it, and axes to each other: single precision
+// leaves 5e-4 in a grid of a thousand cubes a side. And where vertices may have been moved off the
+// cubes' edges: a third to two thirds of the edges are within it then.
 constexpr double ACROSS = 0.002;
+constexpr double NEARLY_ACROSS = 0.01;
+
+// Length of the longest tenth of the edges, over the mean. Cubes leave 1.5, of two sizes 1.75; what
+// was drawn along the axes has faces of any size.
+constexpr double LONG_EDGES = 2.1;
+constexpr double SHORT_EDGES = 1.9;
 
 constexpr std::size_t FEWEST_EDGES = 100;
 
-// Unit vectors along edges of a sample of faces, in the order of their lengths.
-std::vector<Point> edge_directions(const Workspace& workspace, const std::vector<Point>& positions)
+// An edge's length, and the unit vector along it.
+using Edge = std::pair<double, Point>;
+
+// The edges of a sample of faces, all or those that may move, in the order of their lengths.
+std::vector<Edge>
+sample_edges(const Workspace& workspace, const std::vector<Point>& positions, bool with_fixed)
 {
 	const std::vector<Index> faces =
 		sample_by_value(face_geometry(workspace, positions).areas, FACES);
 	const double least = LEAST_LENGTH * mean_edge_length(workspace, positions);
-	std::vector<std::pair<double, Point>> edges;
+	std::vector<Edge> edges;
 	edges.reserve(3 * faces.size());
 	for (const Index i : faces) {
 		const Face& face = workspace.mesh.faces[at(i)];
 		for (std::size_t corner = 0; corner < 3; ++corner) {
-			const Point edge = positions[at(face[(corner + 1) % 3])] - positions[at(face[corner])];
+			const Index from = face[corner];
+			const Index to = face[(corner + 1) % 3];
+			if (!with_fixed && workspace.mesh.is_fixed(from) && workspace.mesh.is_fixed(to))
+				continue;
+			const Point edge = positions[at(to)] - positions[at(from)];
 			const double length = edge.norm();
 			if (length > least)
 				edges.emplace_back(length, edge / length);
 		}
 	}
 	std::stable_sort(
-		edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-	std::vector<Point> directions;
-	directions.reserve(edges.size());
-	for (const auto& edge : edges)
-		directions.push_back(edge.second);
-	return directions;
+		edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.first < b.first; });
+	return edges;
 }
 
 // A cell of the cube around the unit vectors, and its middle.
@@ -135,37 +147,70 @@ Point sharpened(Point axis, const std::vector<Point>& directions)
 	return axis;
 }
 
-double share_across(const Point& axis, const std::vector<Point>& directions)
+double share_across(const Point& axis, const std::vector<Point>& directions, double cosine)
 {
 	const auto count = std::count_if(directions.begin(), directions.end(), [&](const Point& d) {
-		return std::abs(d.dot(axis)) < ACROSS;
+		return std::abs(d.dot(axis)) < cosine;
 	});
 	return static_cast<double>(count) / static_cast<double>(directions.size());
 }
 
-} // namespace
-
-double voxel_share(const Workspace& workspace, const std::vector<Point>& positions)
+// The share of the edges that are across the one of three axes that has the fewest, for the axes
+// that have the most of those that two of the given ones make.
+double
+best_share(const std::vector<Point>& axes, const std::vector<Point>& directions, double cosine)
 {
-	const std::vector<Point> directions = edge_directions(workspace, positions);
-	if (directions.size() < FEWEST_EDGES)
-		return 0;
-	std::vector<std::pair<double, Point>> axes;
-	for (const std::uint32_t cell : fullest_cells(directions)) {
-		const Point axis = sharpened(middle_of(cell), directions);
-		axes.emplace_back(share_across(axis, directions), axis);
-	}
+	std::vector<double> shares;
+	shares.reserve(axes.size());
+	for (const Point& axis : axes)
+		shares.push_back(share_across(axis, directions, cosine));
 	double best = 0;
 	for (std::size_t i = 0; i < axes.size(); ++i) {
 		for (std::size_t j = i + 1; j < axes.size(); ++j) {
-			const double two = std::min(axes[i].first, axes[j].first);
-			if (two <= best || std::abs(axes[i].second.dot(axes[j].second)) > ACROSS)
+			const double two = std::min(shares[i], shares[j]);
+			if (two <= best || std::abs(axes[i].dot(axes[j])) > cosine)
 				continue;
-			const Point third = axes[i].second.cross(axes[j].second);
-			best = std::max(best, std::min(two, share_across(third, directions)));
+			const Point third = axes[i].cross(axes[j]);
+			best = std::max(best, std::min(two, share_across(third, directions, cosine)));
 		}
 	}
 	return best;
+}
+
+VoxelShares shares_of(
+	const std::vector<Edge>& edges, const Workspace& workspace, const std::vector<Point>& positions)
+{
+	if (edges.size() < FEWEST_EDGES)
+		return {};
+	const double longest = edges[edges.size() / 10 * 9].first;
+	const double of_cubes =
+		way_between(LONG_EDGES, SHORT_EDGES, longest / mean_edge_length(workspace, positions));
+	if (of_cubes == 0)
+		return {};
+	std::vector<Point> directions;
+	directions.reserve(edges.size());
+	for (const Edge& edge : edges)
+		directions.push_back(edge.second);
+	std::vector<Point> axes;
+	for (const std::uint32_t cell : fullest_cells(directions))
+		axes.push_back(sharpened(middle_of(cell), directions));
+	return {
+		of_cubes * best_share(axes, directions, ACROSS),
+		of_cubes * best_share(axes, directions, NEARLY_ACROSS)};
+}
+
+} // namespace
+
+VoxelShares voxel_shares(const Workspace& workspace, const std::vector<Point>& positions)
+{
+	const auto shares = [&](bool with_fixed) {
+		return shares_of(sample_edges(workspace, positions, with_fixed), workspace, positions);
+	};
+	const VoxelShares all = shares(true);
+	if (workspace.mesh.fixed.empty())
+		return all;
+	const VoxelShares moving = shares(false);
+	return {std::min(all.on, moving.on), std::min(all.near, moving.near)};
 }
 
 } // namespace orthopoly

@@ -41,11 +41,12 @@ CGAL_MESHES = ["fandisk", "anchor_dense", "blade", "bones", "elephant", "armadil
 # is none at one end of the mesh and twice sigma at the other, view along one axis, as scanners have it.
 # Volume is in the values of one that the mesh is extracted from anew, sigma in its cubes. Simplified is
 # on four times the faces, in their mean edge lengths, and simplified to the mesh's own number by MeshLab.
+# Points is on points of the surface, in the mean distance between them, that MeshLab reconstructs it from.
 NOISES = [
 	("normal", 0.1), ("normal", 0.2), ("normal", 0.3), ("normal", 0.6),
 	("random", 0.2), ("random", 0.4), ("isotropic", 0.3), ("impulsive", 0.5),
 	("uneven", 0.2), ("view", 0.3), ("volume", 0.3),
-	("simplified", 0.3),
+	("simplified", 0.3), ("points", 0.5),
 ]
 # What `orthopoly noise` makes them of.
 DIRECTIONS = {"impulsive": "random", "uneven": "normal", "view": "isotropic", "simplified": "normal"}
@@ -55,6 +56,8 @@ VOLUME_CUBES = 80
 VOLUME_MARGIN = 4
 VOLUME_BAND = 3
 OPEN_MESHES = ["height_field", "blade"]
+# The least number of points that a surface is reconstructed from.
+FEWEST_POINTS = 20000
 # The share of the vertices that impulsive noise moves.
 IMPULSIVE_SHARE = 0.2
 
@@ -124,7 +127,7 @@ def cases_of_our_own(seeds, say):
 		for path in paths:
 			cases.append(Case(group, path.stem, "clean", str(path), str(path)))
 			for kind, sigma in NOISES:
-				if kind == "volume" and path.stem in OPEN_MESHES:
+				if kind in ("volume", "points") and path.stem in OPEN_MESHES:
 					continue
 				for seed in range(1, max(seeds, 1) + 1):
 					cases.append(Case(
@@ -223,6 +226,38 @@ def extract_from_volume(case, seed, target):
 	save(*igl.remove_unreferenced(positions, largest)[:2], target)
 
 
+def reconstruct_from_points(case, seed, target):
+	"""Screened Poisson reconstruction of noisy points of the surface, cubes as wide as these are apart."""
+	import numpy as np
+	import pymeshlab
+
+	clean, faces = load(case.truth)
+	random = np.random.default_rng(seed)
+	count = max(len(clean), FEWEST_POINTS)
+	corners = clean[faces]
+	cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+	areas = np.linalg.norm(cross, axis=1)
+	chosen = random.choice(len(faces), count, p=areas / areas.sum())
+	root, share = np.sqrt(random.random((count, 1))), random.random((count, 1))
+	weights = np.hstack([1 - root, root * (1 - share), root * share])
+	normals = cross[chosen] / areas[chosen, None]
+	apart = np.sqrt(areas.sum() / 2 / count)
+	noise = case.sigma * apart * random.standard_normal((count, 1))
+	points = np.einsum("ij,ijk->ik", weights, corners[chosen]) + noise * normals
+	depth = round(np.log2(1.1 * np.ptp(points, axis=0).max() / apart))
+	with LOADING:
+		meshes = pymeshlab.MeshSet()
+		meshes.add_mesh(pymeshlab.Mesh(points))
+		meshes.apply_filter("compute_normal_for_point_clouds", k=16)
+		# Which side is out, a scanner knows.
+		found = meshes.current_mesh().vertex_normal_matrix()
+		found *= np.sign(np.einsum("ij,ij->i", found, normals))[:, None]
+		meshes = pymeshlab.MeshSet()
+		meshes.add_mesh(pymeshlab.Mesh(points, v_normals_matrix=found))
+		meshes.apply_filter("generate_surface_reconstruction_screened_poisson", depth=depth, preclean=True)
+		meshes.save_current_mesh(str(target), save_vertex_normal=False)
+
+
 def apply_meshlab(source, target, name, **parameters):
 	"""Writes what a filter of MeshLab makes of a mesh."""
 	import pymeshlab
@@ -255,6 +290,9 @@ def make_noise(case, target):
 	seed = int(hashlib.sha256(f"{case.model} {case.seed}".encode()).hexdigest()[:7], 16)
 	if case.kind == "volume":
 		extract_from_volume(case, seed, target)
+		return
+	if case.kind == "points":
+		reconstruct_from_points(case, seed, target)
 		return
 	kind += ["--seed", seed]
 	if case.kind == "simplified":

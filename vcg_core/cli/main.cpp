@@ -180,7 +180,8 @@ void print_result(const TriangleMesh& mesh, const DenoiseResult& result, double 
 {
 	std::cout << mesh.vertex_count() << " vertices, " << mesh.face_count() << " faces: "
 			  << (result.status == DenoiseResult::Status::NothingToDo ?
-					  "no noise worth removing, positions left as they are" :
+					  "no noise worth removing, positions left as they are (if it is rippled "
+					  "over several edges: --set noise_type=scanner)" :
 					  "denoised")
 			  << " in " << seconds << " s\n";
 	if (result.resolved.method == Method::Adaptive) {

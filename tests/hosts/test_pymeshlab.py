@@ -199,6 +199,42 @@ def test_a_clean_mesh_is_told_so(pymeshlab, tmp_path, clean_and_noisy):
     assert np.array_equal(after, ply.read(clean_and_noisy[0]).positions)
 
 
+def test_a_surface_reconstructed_from_noisy_points_is_denoised(pymeshlab, tmp_path):
+    """From points to a mesh with MeshLab's filters: the noise that is left ripples over several edges."""
+    random = np.random.default_rng(7)
+    directions = random.standard_normal((8000, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    apart = math.sqrt(4 * math.pi / len(directions))
+    points = directions * (1 + 0.5 * apart * random.standard_normal((len(directions), 1)))
+    with open(tmp_path / "points.ply", "w") as file:
+        properties = "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz"))
+        file.write(f"ply\nformat ascii 1.0\nelement vertex {len(points)}\n{properties}end_header\n")
+        np.savetxt(file, np.hstack([points, directions]), "%.6f")
+    _, outputs = outputs_of(
+        pymeshlab, tmp_path,
+        load(tmp_path / "points.ply")
+        + [
+            apply("generate_surface_reconstruction_screened_poisson", depth=6),
+            {"do": "save", "path": tmp_path / "before.npz"},
+            apply(DENOISE),
+            {"do": "save", "path": tmp_path / "after.npz"},
+        ],
+    )
+    assert KINDS_OF_NOISE[outputs["resolved_noise_type"]] == "scanner"
+    before, after = (np.load(tmp_path / f"{name}.npz") for name in ("before", "after"))
+    assert np.array_equal(before["faces"], after["faces"])
+
+    def angles(mesh):
+        corners = mesh["positions"][mesh["faces"]]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        out = corners.mean(axis=1)
+        out /= np.linalg.norm(out, axis=1, keepdims=True)
+        return np.degrees(np.arccos(np.clip((normals * out).sum(axis=1), -1, 1)))
+
+    assert angles(after).mean() < 0.4 * angles(before).mean()
+
+
 def test_what_is_said_of_a_level_that_leaves_nothing(pymeshlab, tmp_path, clean_and_noisy):
     """Who has set noise_level is not told to set it."""
     results, log = pymeshlab.run_steps(

@@ -134,6 +134,7 @@ constexpr double MOST_SCANNER_PAIRS_NOISE = 0.25;
 constexpr int SCANNER_SMALLEST_RING = 3;
 constexpr int VOXEL_SMALLEST_RING = 2;
 constexpr int SCANNER_LARGEST_RING = 8;
+constexpr int FACES_PER_SCANNER_STRUCTURE = 6;
 constexpr double SCANNER_THRESHOLD = 0.85;
 constexpr double SCANNER_THRESHOLD_INCREMENT = 0.05;
 constexpr double SCANNER_SELECTION = 200;
@@ -525,7 +526,9 @@ private:
 		options.largest_ring = plan_.rings.largest;
 		options.loosening = LOOSENING;
 		options.selection = plan_.selection;
-		if (plan_.noise >= WIDE_STRUCTURES_NOISE)
+		if (!plan_.is_mostly_white())
+			options.faces_per_structure = FACES_PER_SCANNER_STRUCTURE;
+		else if (plan_.noise >= WIDE_STRUCTURES_NOISE)
 			options.faces_per_structure = FACES_PER_WIDE_STRUCTURE;
 		return filter_normals(workspace_, field, options);
 	}

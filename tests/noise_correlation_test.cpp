@@ -75,6 +75,7 @@ TEST_CASE("The noise of a depth camera is found", "[noise_correlation]")
 		CHECK(found.level > 0.5 * sigma);
 		CHECK(found.level < sigma);
 		CHECK(found.narrow_level < found.level);
+		CHECK(found.reach() == 1);
 	}
 }
 
@@ -101,6 +102,7 @@ TEST_CASE("The noise of a reconstruction from points is found", "[noise_correlat
 		CHECK(found.middle_growth < 1.6);
 		CHECK(found.middle_growth < found.growth);
 		CHECK(found.certainty() > 0.8);
+		CHECK(found.reach() > measured(ball_of_volume(0.7, 60, noise)).reach() + 0.1);
 		// Its vertices moved to where moving least squares have the surface.
 		const NoiseCorrelation moved = measured(noisy(mesh, 0.01, NoiseDirection::Random));
 		CHECK(moved.voxels.on < 0.08);

@@ -27,6 +27,12 @@ namespace orthopoly {
 
 namespace {
 
+// Rings a structure may reach.
+struct Rings {
+	int smallest;
+	int largest;
+};
+
 // Noise from which a prefilter pays (fading in until the second): below it faces do not fold, and
 // smoothing would only cost detail.
 constexpr double PREFILTER_FROM = 0.065;
@@ -124,21 +130,21 @@ constexpr double DISAGREEMENT = 0.1;
 
 // Noise correlated over several edges: more smoothing from one noise to the other, where guides are
 // no longer steady without, structures that may be wide but are of strictly similar directions, and
-// a selection that allows for each independent value being shared by some twenty faces; by seven in
-// a volume, where noise goes together over a cube or two. Heights are no better known than normals
-// then. Where it is not certain that the noise is of that kind, everything lies between.
+// a selection that allows for each independent value being shared by some twenty faces; by seven
+// where it goes together over an edge or two, and structures need not be that wide. Heights are no
+// better known than normals then. Where it is not certain that the noise is of that kind,
+// everything lies between.
 constexpr double LEAST_SCANNER_PAIRS = 3;
 constexpr double LEAST_SCANNER_PAIRS_NOISE = 0.15;
 constexpr double MOST_SCANNER_PAIRS = 10;
 constexpr double MOST_SCANNER_PAIRS_NOISE = 0.25;
-constexpr int SCANNER_SMALLEST_RING = 3;
-constexpr int VOXEL_SMALLEST_RING = 2;
-constexpr int SCANNER_LARGEST_RING = 8;
+constexpr Rings NEAR_RINGS = {2, 8};
+constexpr Rings FAR_RINGS = {3, 10};
 constexpr int FACES_PER_SCANNER_STRUCTURE = 6;
 constexpr double SCANNER_THRESHOLD = 0.85;
 constexpr double SCANNER_THRESHOLD_INCREMENT = 0.05;
-constexpr double SCANNER_SELECTION = 200;
-constexpr double VOXEL_SELECTION = 60;
+constexpr double NEAR_SELECTION = 60;
+constexpr double FAR_SELECTION = 200;
 
 // Steps of the vertex update where that is more likely than not; plain ones, since vertices are
 // held back too little there should accelerated ones go too far.
@@ -189,12 +195,7 @@ double cos_threshold_increment_for(double noise)
 								 (LARGEST_INCREMENT - LEAST_INCREMENT);
 }
 
-// Rings a structure may reach: wider the more there is to average.
-struct Rings {
-	int smallest;
-	int largest;
-};
-
+// Wider the more there is to average.
 Rings rings_for(double noise)
 {
 	if (noise < 0.08)
@@ -238,8 +239,8 @@ int height_rings_for(double noise)
 struct Correlation {
 	/// How far it is taken to, 0 to 1.
 	double share = 0;
-	/// How far over the cubes of a volume only, 0 to 1.
-	double of_voxels = 0;
+	/// From 0 (over an edge or two) to 1 (over many).
+	double reach = 0;
 };
 
 // Everything an iteration goes by.
@@ -300,13 +301,14 @@ Plan plan_for(const DenoiseOptions& options, double noise, const Correlation& ki
 	plan.cos_threshold_increment =
 		between(cos_threshold_increment_for(noise), SCANNER_THRESHOLD_INCREMENT, correlation);
 	// Ratios of variances, hence by their logarithms.
-	const double selection =
-		SCANNER_SELECTION * std::pow(VOXEL_SELECTION / SCANNER_SELECTION, kind.of_voxels);
+	const double selection = NEAR_SELECTION * std::pow(FAR_SELECTION / NEAR_SELECTION, kind.reach);
 	plan.selection = SELECTION * std::pow(selection / SELECTION, correlation);
 	const Rings rings = rings_for(noise);
-	const int smallest = between(SCANNER_SMALLEST_RING, VOXEL_SMALLEST_RING, kind.of_voxels);
-	plan.rings.smallest = between(rings.smallest, smallest, correlation);
-	plan.rings.largest = between(rings.largest, SCANNER_LARGEST_RING, correlation);
+	const auto scanner_ring = [&](int near, int far) { return between(near, far, kind.reach); };
+	plan.rings.smallest =
+		between(rings.smallest, scanner_ring(NEAR_RINGS.smallest, FAR_RINGS.smallest), correlation);
+	plan.rings.largest =
+		between(rings.largest, scanner_ring(NEAR_RINGS.largest, FAR_RINGS.largest), correlation);
 	plan.height_rings = height_rings_for(noise);
 	if (options.structure_ring) {
 		plan.height_rings =
@@ -707,7 +709,7 @@ Noise estimate_noise(const Workspace& workspace, const DenoiseOptions& options)
 		const bool scanner = options.noise_type == NoiseType::Scanner;
 		const NoiseCorrelation measured =
 			measure_noise_correlation(workspace, workspace.mesh.positions, scanner);
-		noise.correlation = {scanner ? 1 : measured.certainty(), measured.is_of_voxels()};
+		noise.correlation = {scanner ? 1 : measured.certainty(), measured.reach()};
 		// What a polynomial over two rings follows of such noise, one over more does not.
 		rough = std::max(rough, measured.narrow_level);
 	}

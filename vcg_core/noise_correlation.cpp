@@ -40,6 +40,11 @@ constexpr Ramp CORRELATED = {0.13, 0.20};
 // to 0.5.
 constexpr Ramp CORRELATED_ON_VOXELS = {0.06, 0.12};
 
+// The same of noise that goes together over an edge or two (values of a volume that are off each by
+// itself) and of such that does over many (reconstructions of points); that of depth cameras does,
+// though it has some of every vertex's own.
+constexpr Ramp FAR_REACHING = {0.28, 0.52};
+
 // Residual of wide polynomials over that of narrow ones. Noise correlated over a few edges
 // gives 1.1 to 1.8; waves and edges of the surface itself 2 and far more, but so does smoother
 // noise.
@@ -131,6 +136,11 @@ double NoiseCorrelation::certainty() const
 double NoiseCorrelation::is_of_voxels() const
 {
 	return std::max(ON_VOXELS(voxels.on), NEAR_VOXELS(voxels.near));
+}
+
+double NoiseCorrelation::reach() const
+{
+	return std::max(ONE_VIEW(view_irregularity), FAR_REACHING(edge_correlation));
 }
 
 NoiseCorrelation measure_noise_correlation(

@@ -41,6 +41,8 @@ struct NoiseCorrelation {
 	double certainty() const;
 	/// From 0 to 1: how surely the mesh was extracted from a volume, whatever its noise.
 	double is_of_voxels() const;
+	/// How far the noise goes together, from 0 (over an edge or two) to 1 (over many).
+	double reach() const;
 };
 
 /// Measures the noise of a mesh. Where it comes neither from a depth camera nor from a volume, the

@@ -250,7 +250,7 @@ struct Plan {
 	/// In mean edge lengths, strength included.
 	double noise = 0;
 	/// Taubin pairs of the prefilter where noise is correlated.
-	double scanner_pairs = MOST_SCANNER_PAIRS;
+	double scanner_pairs = 0;
 	int iterations = ITERATIONS;
 	/// How much of their way the iterations before the last go, 0 to 1.
 	double guiding = 1;
@@ -276,15 +276,26 @@ double strength_factor(Strength strength)
 	return 1;
 }
 
-double between(double white, double scanner, double correlation)
+double between(double from, double to, double share)
 {
-	return (1 - correlation) * white + correlation * scanner;
+	return (1 - share) * from + share * to;
 }
 
-int between(int white, int scanner, double correlation)
+int between(int from, int to, double share)
 {
-	return static_cast<int>(std::lround(
-		between(static_cast<double>(white), static_cast<double>(scanner), correlation)));
+	return static_cast<int>(
+		std::lround(between(static_cast<double>(from), static_cast<double>(to), share)));
+}
+
+Rings between(const Rings& from, const Rings& to, double share)
+{
+	return {between(from.smallest, to.smallest, share), between(from.largest, to.largest, share)};
+}
+
+// Of ratios of variances, hence by their logarithms.
+double between_ratios(double from, double to, double share)
+{
+	return from * std::pow(to / from, share);
 }
 
 Plan plan_for(const DenoiseOptions& options, double noise, const Correlation& kind)
@@ -300,15 +311,9 @@ Plan plan_for(const DenoiseOptions& options, double noise, const Correlation& ki
 	plan.cos_threshold = between(cos_threshold_for(noise), SCANNER_THRESHOLD, correlation);
 	plan.cos_threshold_increment =
 		between(cos_threshold_increment_for(noise), SCANNER_THRESHOLD_INCREMENT, correlation);
-	// Ratios of variances, hence by their logarithms.
-	const double selection = NEAR_SELECTION * std::pow(FAR_SELECTION / NEAR_SELECTION, kind.reach);
-	plan.selection = SELECTION * std::pow(selection / SELECTION, correlation);
-	const Rings rings = rings_for(noise);
-	const auto scanner_ring = [&](int near, int far) { return between(near, far, kind.reach); };
-	plan.rings.smallest =
-		between(rings.smallest, scanner_ring(NEAR_RINGS.smallest, FAR_RINGS.smallest), correlation);
-	plan.rings.largest =
-		between(rings.largest, scanner_ring(NEAR_RINGS.largest, FAR_RINGS.largest), correlation);
+	plan.selection = between_ratios(
+		SELECTION, between_ratios(NEAR_SELECTION, FAR_SELECTION, kind.reach), correlation);
+	plan.rings = between(rings_for(noise), between(NEAR_RINGS, FAR_RINGS, kind.reach), correlation);
 	plan.height_rings = height_rings_for(noise);
 	if (options.structure_ring) {
 		plan.height_rings =

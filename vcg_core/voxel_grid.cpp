@@ -51,16 +51,21 @@ constexpr double SHORT_EDGES = 1.9;
 
 constexpr std::size_t FEWEST_EDGES = 100;
 
-// An edge's length, and the unit vector along it.
-using Edge = std::pair<double, Point>;
+struct Edge {
+	double length;
+	/// Unit vector along it.
+	Point direction;
+	/// Whether an end of it may move.
+	bool moving;
+};
 
-// The edges of a sample of faces, all or those that may move, in the order of their lengths.
+// The edges of a sample of faces, in the order of their lengths.
 std::vector<Edge>
-sample_edges(const Workspace& workspace, const std::vector<Point>& positions, bool with_fixed)
+sample_edges(const Workspace& workspace, const std::vector<Point>& positions, double mean_length)
 {
 	const std::vector<Index> faces =
 		sample_by_value(face_geometry(workspace, positions).areas, FACES);
-	const double least = LEAST_LENGTH * mean_edge_length(workspace, positions);
+	const double least = LEAST_LENGTH * mean_length;
 	std::vector<Edge> edges;
 	edges.reserve(3 * faces.size());
 	for (const Index i : faces) {
@@ -68,16 +73,18 @@ sample_edges(const Workspace& workspace, const std::vector<Point>& positions, bo
 		for (std::size_t corner = 0; corner < 3; ++corner) {
 			const Index from = face[corner];
 			const Index to = face[(corner + 1) % 3];
-			if (!with_fixed && workspace.mesh.is_fixed(from) && workspace.mesh.is_fixed(to))
-				continue;
 			const Point edge = positions[at(to)] - positions[at(from)];
 			const double length = edge.norm();
 			if (length > least)
-				edges.emplace_back(length, edge / length);
+				edges.push_back(
+					{length,
+					 edge / length,
+					 !workspace.mesh.is_fixed(from) || !workspace.mesh.is_fixed(to)});
 		}
 	}
-	std::stable_sort(
-		edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.first < b.first; });
+	std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+		return a.length < b.length;
+	});
 	return edges;
 }
 
@@ -177,20 +184,18 @@ best_share(const std::vector<Point>& axes, const std::vector<Point>& directions,
 	return best;
 }
 
-VoxelShares shares_of(
-	const std::vector<Edge>& edges, const Workspace& workspace, const std::vector<Point>& positions)
+VoxelShares shares_of(const std::vector<Edge>& edges, double mean_length)
 {
 	if (edges.size() < FEWEST_EDGES)
 		return {};
-	const double longest = edges[edges.size() / 10 * 9].first;
-	const double of_cubes =
-		way_between(LONG_EDGES, SHORT_EDGES, longest / mean_edge_length(workspace, positions));
+	const double longest = edges[edges.size() / 10 * 9].length;
+	const double of_cubes = way_between(LONG_EDGES, SHORT_EDGES, longest / mean_length);
 	if (of_cubes == 0)
 		return {};
 	std::vector<Point> directions;
 	directions.reserve(edges.size());
 	for (const Edge& edge : edges)
-		directions.push_back(edge.second);
+		directions.push_back(edge.direction);
 	std::vector<Point> axes;
 	for (const std::uint32_t cell : fullest_cells(directions))
 		axes.push_back(sharpened(middle_of(cell), directions));
@@ -203,13 +208,15 @@ VoxelShares shares_of(
 
 VoxelShares voxel_shares(const Workspace& workspace, const std::vector<Point>& positions)
 {
-	const auto shares = [&](bool with_fixed) {
-		return shares_of(sample_edges(workspace, positions, with_fixed), workspace, positions);
-	};
-	const VoxelShares all = shares(true);
+	const double mean_length = mean_edge_length(workspace, positions);
+	std::vector<Edge> edges = sample_edges(workspace, positions, mean_length);
+	const VoxelShares all = shares_of(edges, mean_length);
 	if (workspace.mesh.fixed.empty())
 		return all;
-	const VoxelShares moving = shares(false);
+	edges.erase(
+		std::remove_if(edges.begin(), edges.end(), [](const Edge& edge) { return !edge.moving; }),
+		edges.end());
+	const VoxelShares moving = shares_of(edges, mean_length);
 	return {std::min(all.on, moving.on), std::min(all.near, moving.near)};
 }
 

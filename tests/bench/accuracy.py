@@ -127,7 +127,7 @@ def cases_of_our_own(seeds, say):
 		for path in paths:
 			cases.append(Case(group, path.stem, "clean", str(path), str(path)))
 			for kind, sigma in NOISES:
-				if kind in ("volume", "points") and path.stem in OPEN_MESHES:
+				if kind in NEW_SURFACES and path.stem in OPEN_MESHES:
 					continue
 				for seed in range(1, max(seeds, 1) + 1):
 					cases.append(Case(
@@ -258,6 +258,10 @@ def reconstruct_from_points(case, seed, target):
 		meshes.save_current_mesh(str(target), save_vertex_normal=False)
 
 
+# Kinds of noise that come with a mesh of their own.
+NEW_SURFACES = {"volume": extract_from_volume, "points": reconstruct_from_points}
+
+
 def apply_meshlab(source, target, name, **parameters):
 	"""Writes what a filter of MeshLab makes of a mesh."""
 	import pymeshlab
@@ -288,11 +292,8 @@ def make_noise(case, target):
 		kind += ["--impulsive-share", IMPULSIVE_SHARE]
 	# Meshes get draws of their own even with one seed.
 	seed = int(hashlib.sha256(f"{case.model} {case.seed}".encode()).hexdigest()[:7], 16)
-	if case.kind == "volume":
-		extract_from_volume(case, seed, target)
-		return
-	if case.kind == "points":
-		reconstruct_from_points(case, seed, target)
+	if case.kind in NEW_SURFACES:
+		NEW_SURFACES[case.kind](case, seed, target)
 		return
 	kind += ["--seed", seed]
 	if case.kind == "simplified":

@@ -225,10 +225,8 @@ def test_a_surface_reconstructed_from_noisy_points_is_denoised(pymeshlab, tmp_pa
     assert np.array_equal(before["faces"], after["faces"])
 
     def angles(mesh):
-        corners = mesh["positions"][mesh["faces"]]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-        out = corners.mean(axis=1)
+        normals = shapes.normals(mesh["positions"], mesh["faces"])
+        out = mesh["positions"][mesh["faces"]].mean(axis=1)
         out /= np.linalg.norm(out, axis=1, keepdims=True)
         return np.degrees(np.arccos(np.clip((normals * out).sum(axis=1), -1, 1)))
 

@@ -575,3 +575,24 @@ TEST_CASE("Scanner noise is filtered at a level of zero too", "[adaptive_method]
 	};
 	CHECK(angle(0) < 1.5 * angle(0.2));
 }
+
+TEST_CASE("Rounded coordinates are smoothed, terraces too", "[adaptive_method]")
+{
+	struct Bound {
+		double step;
+		double share;
+	};
+	for (const Bound bound : {Bound {0.3, 0.35}, Bound {0.6, 0.3}, Bound {1.0, 0.2}}) {
+		CAPTURE(bound.step);
+		const TriangleMesh truth = make_torus(8000);
+		const TriangleMesh mesh = rounded(truth, bound.step);
+		const DenoiseResult result = denoised(mesh, {});
+		const double before = measure(mesh, truth).mean_angle;
+		const TriangleMesh after = with_positions(mesh, result.positions);
+		CHECK(measure(after, truth).mean_angle < bound.share * before);
+		CHECK(measure(after, truth).folded_faces == 0);
+		CHECK(
+			result.resolved.noise_type ==
+			(bound.step > 0.7 ? NoiseType::Scanner : NoiseType::White));
+	}
+}

@@ -19,6 +19,15 @@ inline TriangleMesh with_positions(TriangleMesh mesh, std::vector<Point> positio
 	return mesh;
 }
 
+/// The mesh with its coordinates rounded to steps of so many mean edge lengths.
+inline TriangleMesh rounded(TriangleMesh mesh, double step)
+{
+	const double unit = step * mean_edge_length(mesh.positions, mesh.faces);
+	for (Point& position : mesh.positions)
+		position = unit * (position / unit).array().round().matrix();
+	return mesh;
+}
+
 /// Denoises without anyone watching.
 inline DenoiseResult denoised(const TriangleMesh& mesh, const DenoiseOptions& options)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "noise_level.h"
 
+#include "lattice.h"
 #include "method_support.h"
 #include "recipes.h"
 
@@ -121,6 +122,32 @@ TEST_CASE("A drawn part of few faces reads as clean, and as noisy with noise", "
 			const StepFixture g(mesh);
 			CHECK(estimate_noise_levels(g.workspace, mesh.positions).drawn == 0);
 		}
+	}
+}
+
+TEST_CASE("Rounded coordinates are noise, a drawn lattice is none", "[noise_level]")
+{
+	for (const double step : {0.15, 0.3, 0.6}) {
+		CAPTURE(step);
+		for (const TriangleMesh& truth : {make_sphere(6000), make_torus(6000), make_part(15000)}) {
+			const TriangleMesh mesh = rounded(truth, step);
+			const StepFixture f(mesh);
+			const NoiseLevels levels = estimate_noise_levels(f.workspace, mesh.positions);
+			// Faces along the lattice are in planes with their neighbours.
+			CHECK(levels.rounding == Approx(step / std::sqrt(12)).epsilon(0.1));
+			CHECK(levels.drawn == 0);
+			CHECK(estimated(mesh) >= levels.rounding);
+			CHECK(estimated(mesh) < 1.2 * levels.rounding);
+			// Stronger noise is what there is to take.
+			const TriangleMesh twice = rounded(noisy(truth, step), step);
+			CHECK(estimated(twice) == Approx(true_level(truth, twice)).epsilon(0.2));
+		}
+	}
+	for (const TriangleMesh& drawn : {make_cube(5000), make_cube(300), make_flat_grid(30)}) {
+		const StepFixture f(drawn);
+		CHECK(lattice_step(f.workspace, drawn.positions) > 0.5);
+		CHECK(estimate_noise_levels(f.workspace, drawn.positions).rounding == 0);
+		CHECK(estimated(drawn) == 0);
 	}
 }
 

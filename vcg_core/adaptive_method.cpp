@@ -146,6 +146,11 @@ constexpr double SCANNER_THRESHOLD_INCREMENT = 0.05;
 constexpr double NEAR_SELECTION = 60;
 constexpr double FAR_SELECTION = 200;
 
+// Deviation of rounded coordinates from which what rounding leaves goes together over several
+// edges, as terraces, and from which all of it does.
+constexpr double FINE_ROUNDING = 0.14;
+constexpr double COARSE_ROUNDING = 0.2;
+
 // Steps of the vertex update where that is more likely than not; plain ones, since vertices are
 // held back too little there should accelerated ones go too far.
 constexpr int SCANNER_VERTEX_ITERATIONS = 60;
@@ -626,22 +631,40 @@ std::optional<TakenMoves> run_at(
 	return AdaptiveMethod(workspace, plan, factors, positions).run();
 }
 
+// What noise a mesh has.
+struct Noise {
+	Correlation correlation;
+	UnevenNoise uneven;
+	OutlierRepair outliers;
+	// In mean edge lengths, and what no noise and hardly any detail of the mesh is beyond.
+	double level = 0;
+	double most = 0;
+	// What is certain to be noise of it: rounded coordinates.
+	double rounding = 0;
+};
+
 // Runs the method at the estimated level or the one that is set; where what an estimate takes
 // proves to be detail for a good part, again at the level of the rest.
 void lower_and_run(
 	const Workspace& workspace,
 	const DenoiseOptions& options,
-	const Correlation& correlation,
-	const std::vector<double>& factors,
+	const Noise& noise,
 	DenoiseResult& result,
 	std::vector<Point>& positions)
 {
 	const double strength = strength_factor(options.strength);
-	const auto run = [&](double noise) {
-		return run_at(noise, workspace, options, correlation, factors, result, positions);
+	const auto run = [&](double at_level) {
+		return run_at(
+			at_level,
+			workspace,
+			options,
+			noise.correlation,
+			noise.uneven.factors,
+			result,
+			positions);
 	};
 	std::optional<TakenMoves> taken = run(strength * *result.resolved.noise_level);
-	if (options.noise_level || correlation.share > 0 || !taken || taken->predicted < DETAIL)
+	if (options.noise_level || noise.correlation.share > 0 || !taken || taken->predicted < DETAIL)
 		return;
 	// The level is the same at any strength.
 	double& level = result.estimated_noise;
@@ -649,9 +672,10 @@ void lower_and_run(
 		taken = run(level);
 	for (int round = 0; round < MOST_LOWERINGS && taken && taken->predicted > DETAIL; ++round) {
 		const double left = std::sqrt(taken->square * (1 - taken->predicted));
-		if (left > WORTH_LOWERING || (round > 0 && taken->square > 1))
+		const double lower = std::max(noise.rounding, left * level);
+		if (lower > WORTH_LOWERING * level || (round > 0 && taken->square > 1))
 			break;
-		level *= left;
+		level = lower;
 		taken = run(level);
 	}
 	if (strength != 1)
@@ -694,16 +718,6 @@ void record_range(const std::vector<double>& factors, DenoiseResult& result)
 	result.estimated_noise_high = level_at(1 - LOW_SHARE);
 }
 
-// What noise a mesh has.
-struct Noise {
-	Correlation correlation;
-	UnevenNoise uneven;
-	OutlierRepair outliers;
-	// In mean edge lengths, and what no noise and hardly any detail of the mesh is beyond.
-	double level = 0;
-	double most = 0;
-};
-
 Noise estimate_noise(const Workspace& workspace, const DenoiseOptions& options)
 {
 	workspace.execution.begin_phase(0.05, 0.08, "estimating the noise");
@@ -715,6 +729,8 @@ Noise estimate_noise(const Workspace& workspace, const DenoiseOptions& options)
 		const NoiseCorrelation measured =
 			measure_noise_correlation(workspace, workspace.mesh.positions, scanner);
 		noise.correlation = {scanner ? 1 : measured.certainty(), measured.reach()};
+		if (levels.rounding > 0 && !scanner)
+			noise.correlation.share = way_between(FINE_ROUNDING, COARSE_ROUNDING, levels.rounding);
 		// What a polynomial over two rings follows of such noise, one over more does not.
 		rough = std::max(rough, measured.narrow_level);
 	}
@@ -733,6 +749,7 @@ Noise estimate_noise(const Workspace& workspace, const DenoiseOptions& options)
 	const double level = between(even, noise.uneven.level, noise.uneven.certainty);
 	noise.level = between(level, noise.outliers.level, noise.outliers.share);
 	noise.most = std::max(rough, noise.uneven.level);
+	noise.rounding = levels.rounding;
 	return noise;
 }
 
@@ -749,8 +766,7 @@ void run_for(
 	result.resolved.noise_type =
 		noise.correlation.share > 0.5 ? NoiseType::Scanner : NoiseType::White;
 	if (noise.outliers.share == 0)
-		lower_and_run(
-			workspace, options, noise.correlation, noise.uneven.factors, result, positions);
+		lower_and_run(workspace, options, noise, result, positions);
 	else
 		repair_and_run(workspace, options, noise.correlation, noise.outliers, result, positions);
 	record_range(noise.uneven.factors, result);

@@ -32,6 +32,9 @@ struct NoiseLevels {
 	/// Share of the level that is not there, 0 to 1: of surfaces that were drawn with their faces
 	/// in planes, or where but some vertices are outliers.
 	double drawn = 0;
+	/// Of coordinates that were rounded to a lattice (see lattice_step); zero where they were not,
+	/// and where no more than that would leave is seen of it, as on what was drawn on a lattice.
+	double rounding = 0;
 	/// The same with what is taken for detail: noise that goes together over several edges grows
 	/// like it.
 	double rough = 0;

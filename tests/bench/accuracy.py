@@ -42,11 +42,12 @@ CGAL_MESHES = ["fandisk", "anchor_dense", "blade", "bones", "elephant", "armadil
 # Volume is in the values of one that the mesh is extracted from anew, sigma in its cubes. Simplified is
 # on four times the faces, in their mean edge lengths, and simplified to the mesh's own number by MeshLab.
 # Points is on points of the surface, in the mean distance between them, that MeshLab reconstructs it from.
+# Rounded has no draws: sigma is the step that coordinates are rounded to.
 NOISES = [
 	("normal", 0.1), ("normal", 0.2), ("normal", 0.3), ("normal", 0.6),
 	("random", 0.2), ("random", 0.4), ("isotropic", 0.3), ("impulsive", 0.5),
 	("uneven", 0.2), ("view", 0.3), ("volume", 0.3),
-	("simplified", 0.3), ("points", 0.5),
+	("simplified", 0.3), ("points", 0.5), ("rounded", 0.6),
 ]
 # What `orthopoly noise` makes them of.
 DIRECTIONS = {"impulsive": "random", "uneven": "normal", "view": "isotropic", "simplified": "normal"}
@@ -258,6 +259,15 @@ def reconstruct_from_points(case, seed, target):
 		meshes.save_current_mesh(str(target), save_vertex_normal=False)
 
 
+def round_coordinates(case, target):
+	import igl
+	import numpy as np
+
+	clean, faces = load(case.truth)
+	step = case.sigma * igl.avg_edge_length(clean, faces.astype(np.int64))
+	save(step * np.round(clean / step), faces, target)
+
+
 # Kinds of noise that come with a mesh of their own.
 NEW_SURFACES = {"volume": extract_from_volume, "points": reconstruct_from_points}
 
@@ -294,6 +304,9 @@ def make_noise(case, target):
 	seed = int(hashlib.sha256(f"{case.model} {case.seed}".encode()).hexdigest()[:7], 16)
 	if case.kind in NEW_SURFACES:
 		NEW_SURFACES[case.kind](case, seed, target)
+		return
+	if case.kind == "rounded":
+		round_coordinates(case, target)
 		return
 	kind += ["--seed", seed]
 	if case.kind == "simplified":

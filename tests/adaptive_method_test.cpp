@@ -596,3 +596,17 @@ TEST_CASE("Rounded coordinates are smoothed, terraces too", "[adaptive_method]")
 			(bound.step > 0.7 ? NoiseType::Scanner : NoiseType::White));
 	}
 }
+
+TEST_CASE("Broad bumps survive, on large meshes too", "[adaptive_method][slow]")
+{
+	// Tried out on all of a mesh, and in places. Without, they leave 0.091 and 0.098.
+	for (const Index faces : {20000, 110000}) {
+		CAPTURE(faces);
+		const TriangleMesh truth = bumpy_sphere(faces, 12, 0.8);
+		const TriangleMesh mesh = noisy(truth, 0.2);
+		const auto error = measure(with_positions(mesh, denoised(mesh, {}).positions), truth);
+		CHECK(error.relative_vertex_error < 0.08);
+		CHECK(error.mean_angle < 3.6);
+		CHECK(error.folded_faces == 0);
+	}
+}

@@ -28,6 +28,20 @@ inline TriangleMesh rounded(TriangleMesh mesh, double step)
 	return mesh;
 }
 
+/// The sphere with bumps all over it, so many edges from one to the next and in edges.
+inline TriangleMesh bumpy_sphere(Index faces, double edges, double height)
+{
+	TriangleMesh mesh = make_sphere(faces);
+	const double edge = mean_edge_length(mesh.positions, mesh.faces);
+	const double wave = 2 * M_PI / (edges * edge);
+	for (Point& p : mesh.positions) {
+		const double bumps =
+			std::cos(wave * p.x()) * std::cos(wave * p.y()) * std::cos(wave * p.z());
+		p *= 1 + height * edge * bumps / p.norm();
+	}
+	return mesh;
+}
+
 /// Denoises without anyone watching.
 inline DenoiseResult denoised(const TriangleMesh& mesh, const DenoiseOptions& options)
 {

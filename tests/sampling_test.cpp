@@ -250,3 +250,40 @@ TEST_CASE("A part of a sample has those of the same values in any order", "[samp
 	CHECK(subsample_by_value(areas(700), 500).size() == 700);
 	CHECK(subsample_by_value({}, 500).empty());
 }
+
+TEST_CASE("Signs are thrown by values, by numbers where these are alike", "[sampling]")
+{
+	std::mt19937 generator(1);
+	std::uniform_real_distribution<double> uniform(0.5, 1.5);
+	std::vector<double> values(10000);
+	for (double& value : values)
+		value = uniform(generator);
+	const auto sum = [](const std::vector<double>& signs) {
+		return std::accumulate(signs.begin(), signs.end(), 0.0);
+	};
+	const std::vector<double> signs = signs_by_value(values);
+	CHECK(std::abs(sum(signs)) < 500);
+	CHECK(std::all_of(signs.begin(), signs.end(), [](double sign) { return std::abs(sign) == 1; }));
+	// Neighbours in value have nothing in common, nor have those in number.
+	std::vector<double> sorted = values;
+	std::sort(sorted.begin(), sorted.end());
+	for (const std::vector<double>& thrown : {signs, signs_by_value(sorted)}) {
+		double products = 0;
+		for (std::size_t k = 1; k < thrown.size(); ++k)
+			products += thrown[k] * thrown[k - 1];
+		CHECK(std::abs(products) < 500);
+	}
+	std::vector<double> turned(values.rbegin(), values.rend());
+	for (double& value : turned)
+		value *= 1e3 * (1 + 1e-15);
+	const std::vector<double> of_turned = signs_by_value(turned);
+	CHECK(std::equal(signs.begin(), signs.end(), of_turned.rbegin()));
+	CHECK(std::abs(sum(signs_by_value(std::vector<double>(10000, 0.7)))) < 500);
+	CHECK(signs_by_value({}).empty());
+	// What has no value takes no part.
+	std::vector<double> with_nothing = values;
+	with_nothing.insert(with_nothing.begin() + 10, 20000, 0);
+	const std::vector<double> of_some = signs_by_value(with_nothing);
+	CHECK(std::equal(signs.begin() + 10, signs.end(), of_some.begin() + 20010));
+	CHECK(of_some[10] == 0);
+}

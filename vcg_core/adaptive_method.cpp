@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "adaptive_method.h"
 
+#include "broad_detail.h"
 #include "detail.h"
 #include "deviations.h"
 #include "height_filter.h"
 #include "interpolation.h"
+#include "mesh_part.h"
 #include "noise_correlation.h"
 #include "noise_level.h"
 #include "normal_filter.h"
@@ -164,6 +166,9 @@ constexpr double WORTH_LOWERING = 0.95;
 
 // Runs at lower levels: each lowers it by a seventh or more, and two have been enough so far.
 constexpr int MOST_LOWERINGS = 4;
+
+// Faces of a mesh up to which all of it is denoised with a probe.
+constexpr Index MOST_PROBED = 100000;
 
 // A noise level that is set counts from here: less is rounding in the files that meshes come in.
 constexpr double NEGLIGIBLE_NOISE = 1e-6;
@@ -409,6 +414,9 @@ public:
 	{
 	}
 
+	/// The overall noise it went by, after a run, in the caller's length unit.
+	double sigma() const { return deviations_.overall(); }
+
 	/// Returns what it took from the vertices; nothing where noise is correlated.
 	TakenMoves run()
 	{
@@ -608,9 +616,15 @@ private:
 	std::vector<Point>& positions_;
 };
 
-// Runs the method for that noise, from the workspace's mesh on. Returns what it took; nothing where
-// there is too little noise to do anything.
-std::optional<TakenMoves> run_at(
+// What a run took, and the noise that it went by, in the caller's length unit.
+struct Run {
+	TakenMoves taken;
+	double sigma;
+};
+
+// Runs the method for that noise, from the workspace's mesh on. Returns nothing where there is too
+// little noise to do anything.
+std::optional<Run> run_at(
 	double noise,
 	const Workspace& workspace,
 	const DenoiseOptions& options,
@@ -628,7 +642,48 @@ std::optional<TakenMoves> run_at(
 	if (nothing)
 		return std::nullopt;
 	positions = workspace.mesh.positions;
-	return AdaptiveMethod(workspace, plan, factors, positions).run();
+	AdaptiveMethod method(workspace, plan, factors, positions);
+	const TakenMoves taken = method.run();
+	return Run {taken, method.sigma()};
+}
+
+// Gives back what broad detail a run took along with noise that is white and the same everywhere. A
+// mesh of many faces is tried out in places first, and what the method follows of noise there is
+// taken for that of all of it.
+void give_back_broad_detail(
+	double level,
+	double sigma,
+	const Workspace& workspace,
+	const DenoiseOptions& options,
+	std::vector<Point>& positions)
+{
+	const auto denoised = [&](const TriangleMesh& mesh) {
+		const Workspace its_workspace(mesh, workspace.execution);
+		// Levels are in edge lengths, which differ.
+		const double scale = workspace.mean_edge_length / its_workspace.mean_edge_length;
+		const Plan plan = plan_for(options, scale * level, {});
+		std::vector<Point> result = mesh.positions;
+		AdaptiveMethod(its_workspace, plan, {}, result).run();
+		return result;
+	};
+	const auto with_probe = [](TriangleMesh mesh, const BroadDetail& detail) {
+		mesh.positions = detail.with_probe();
+		return mesh;
+	};
+	if (workspace.mesh.face_count() <= MOST_PROBED) {
+		const BroadDetail detail(workspace, sigma, positions);
+		const std::vector<Point> probed = denoised(with_probe(workspace.mesh, detail));
+		detail.give_back(detail.share_followed(positions, probed), positions);
+		return;
+	}
+	const MeshPart part = cut_out_places(workspace);
+	const Workspace part_workspace(part.mesh, workspace.execution);
+	const std::vector<Point> plain = denoised(part.mesh);
+	const BroadDetail detail(part_workspace, sigma, plain);
+	const std::vector<Point> probed = denoised(with_probe(part.mesh, detail));
+	const double followed = detail.share_followed(plain, probed, part.inner);
+	if (detail.certainty(followed, part.inner) > 0)
+		BroadDetail(workspace, sigma, positions).give_back(followed, positions);
 }
 
 // What noise a mesh has.
@@ -663,26 +718,32 @@ void lower_and_run(
 			result,
 			positions);
 	};
-	std::optional<TakenMoves> taken = run(strength * *result.resolved.noise_level);
-	if (options.noise_level || noise.correlation.share > 0 || !taken || taken->predicted < DETAIL)
+	double& level = *result.resolved.noise_level;
+	std::optional<Run> last = run(strength * level);
+	if (noise.correlation.share > 0)
 		return;
-	// The level is the same at any strength.
-	double& level = result.estimated_noise;
-	if (strength != 1)
-		taken = run(level);
-	for (int round = 0; round < MOST_LOWERINGS && taken && taken->predicted > DETAIL; ++round) {
-		const double left = std::sqrt(taken->square * (1 - taken->predicted));
-		const double lower = std::max(noise.rounding, left * level);
-		if (lower > WORTH_LOWERING * level || (round > 0 && taken->square > 1))
-			break;
-		level = lower;
-		taken = run(level);
+	if (!options.noise_level && last && last->taken.predicted > DETAIL) {
+		// The level is the same at any strength.
+		if (strength != 1)
+			last = run(level);
+		for (int round = 0; round < MOST_LOWERINGS && last && last->taken.predicted > DETAIL;
+			 ++round) {
+			const TakenMoves& taken = last->taken;
+			const double left = std::sqrt(taken.square * (1 - taken.predicted));
+			const double lower = std::max(noise.rounding, left * level);
+			if (lower > WORTH_LOWERING * level || (round > 0 && taken.square > 1))
+				break;
+			level = lower;
+			last = run(level);
+		}
+		if (strength != 1)
+			last = run(strength * level);
+		result.estimated_noise = level;
 	}
-	if (strength != 1)
-		taken = run(strength * level);
-	result.resolved.noise_level = level;
-	if (!taken)
+	if (!last)
 		positions = workspace.mesh.positions;
+	else if (noise.uneven.factors.empty())
+		give_back_broad_detail(strength * level, last->sigma, workspace, options, positions);
 }
 
 // The same with the outliers put back first, and the other vertices in the end.

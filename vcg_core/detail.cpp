@@ -4,6 +4,7 @@
 #include "interpolation.h"
 #include "local_heights.h"
 #include "move_prediction.h"
+#include "moves.h"
 #include "sampling.h"
 
 #include <Eigen/Core>
@@ -13,10 +14,6 @@
 namespace orthopoly {
 
 namespace {
-
-// Moves count up to so many deviations of the noise, so that a vertex far off, be it an outlier or
-// moved on purpose, does not make its surroundings detail.
-constexpr double LARGEST_MOVE = 3;
 
 // Averages over vertices and their neighbours, one after the other, of what tells how much the
 // moves around a vertex have in common: together a mean over some two hundred vertices.
@@ -34,10 +31,6 @@ constexpr double CERTAIN = 0.14;
 
 // Averages are less than the detail they are of, so that more than all of them may be given back.
 constexpr double LARGEST_GAIN = 1.5;
-
-// Vertices whose faces' normals add up to less than this (as two at 64 degrees do) lie on an edge.
-// Those slide along it, which no normal of theirs tells.
-constexpr double EDGE = 0.85;
 
 // Median share of the moves' variance that their neighbours predict, from which there are ridges or
 // grooves as narrow as the triangles all over the mesh, and are for certain. Noise alone and smooth
@@ -80,65 +73,6 @@ constexpr double LEAST_DISTANCE = 1e-3;
 constexpr double LARGEST_DISTANCE = 0.035;
 
 constexpr Index GRAIN = 256;
-
-Moves moves_along_normals(
-	const Workspace& workspace, const Deviations& sigma, const std::vector<Point>& positions)
-{
-	Moves moves {
-		std::vector<double>(positions.size(), 0.0),
-		std::vector<Point>(positions.size(), Point::Zero())};
-	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		const Point cross = cross_product_around(workspace, positions, static_cast<Index>(i));
-		const double length = cross.norm();
-		if (!(length > 0))
-			return;
-		moves.crosses[i] = cross;
-		const Point normal = cross / length;
-		const double move = (workspace.mesh.positions[i] - positions[i]).dot(normal) / sigma[i];
-		moves.lengths[i] = std::max(-LARGEST_MOVE, std::min(LARGEST_MOVE, move));
-	});
-	return moves;
-}
-
-// Takes means over each vertex and its neighbours, these weighed by the faces shared, so many
-// times.
-template<class Value>
-void average(const Workspace& workspace, int times, std::vector<Value>& values)
-{
-	const std::vector<Face>& faces = workspace.mesh.faces;
-	const IndexLists& around = workspace.vertex_faces;
-	std::vector<Value> sums(faces.size());
-	for (int k = 0; k < times; ++k) {
-		workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
-			const Face& face = faces[i];
-			sums[i] = values[at(face[0])] + values[at(face[1])] + values[at(face[2])];
-		});
-		workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-			const auto vertex = static_cast<Index>(i);
-			const Index* const first = around.begin(vertex);
-			const Index* const end = around.end(vertex);
-			if (first == end)
-				return;
-			Value sum = sums[at(*first)];
-			for (const Index* face = first + 1; face != end; ++face)
-				sum += sums[at(*face)];
-			values[i] = sum / (3.0 * static_cast<double>(end - first));
-		});
-	}
-}
-
-// The same without those of vertices on edges.
-Moves moves_beside_edges(
-	const Workspace& workspace, const Deviations& sigma, const std::vector<Point>& positions)
-{
-	Moves moves = moves_along_normals(workspace, sigma, positions);
-	const std::vector<double> areas = areas_around(workspace, positions);
-	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		if (moves.crosses[i].norm() < EDGE * areas[i])
-			moves.lengths[i] = 0;
-	});
-	return moves;
-}
 
 // Takes vertices back along what their moves have in common with those around them.
 void give_back_common(

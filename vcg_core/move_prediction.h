@@ -2,19 +2,12 @@
 #pragma once
 
 #include "local_heights.h"
+#include "moves.h"
 
 #include <Eigen/Core>
 #include <vector>
 
 namespace orthopoly {
-
-/// How vertices were moved from where they were measured.
-struct Moves {
-	/// Back along the normals, in deviations of the noise: #V; zero where there is no normal.
-	std::vector<double> lengths;
-	/// #V sums of the cross products around, along the normals; zero where there is none.
-	std::vector<Point> crosses;
-};
 
 /// What a vertex's move was to be by those of its neighbours.
 struct PredictedMove {

@@ -9,11 +9,6 @@ namespace orthopoly {
 
 namespace {
 
-// Steps of a Taubin pair. Their pass band ends at 1/0.5 - 1/0.53 = 0.11 of the umbrella operator's
-// spectrum: waves longer than about ten edges keep their height.
-constexpr double SHRINK = 0.5;
-constexpr double INFLATE = -0.53;
-
 constexpr Index GRAIN = 2048;
 
 // The way from a vertex on an open boundary to the middle between those next to it there; zero
@@ -100,7 +95,7 @@ void taubin_smooth(
 	}
 	for (double left = pairs; left > 0; left -= 1) {
 		const double share = std::min(1.0, left);
-		for (const double step : {SHRINK, INFLATE})
+		for (const double step : {TAUBIN_SHRINK, TAUBIN_INFLATE})
 			umbrella_step(
 				workspace, vertices, only, [=](std::size_t) { return share * step; }, positions);
 	}
@@ -116,7 +111,7 @@ void taubin_smooth(
 		vertices.erase(std::remove_if(vertices.begin(), vertices.end(), is_done), vertices.end());
 		if (vertices.empty())
 			return;
-		for (const double step : {SHRINK, INFLATE})
+		for (const double step : {TAUBIN_SHRINK, TAUBIN_INFLATE})
 			umbrella_step(
 				workspace,
 				vertices,

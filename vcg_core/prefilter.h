@@ -9,6 +9,11 @@
 
 namespace orthopoly {
 
+/// Steps of a Taubin pair. Their pass band ends at 1/0.5 - 1/0.53 = 0.11 of the umbrella operator's
+/// spectrum: waves longer than about ten edges keep their height.
+constexpr double TAUBIN_SHRINK = 0.5;
+constexpr double TAUBIN_INFLATE = -0.53;
+
 /// Taubin smoothing (Taubin 1995): pairs of a shrinking and an inflating umbrella step. Vertices on
 /// an open boundary move along their normal only, so that the outline stays, but for those of
 /// `only` with a face turned over: these move along with the outline too.

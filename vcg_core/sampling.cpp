@@ -104,6 +104,36 @@ std::vector<std::size_t> subsample_by_value(const std::vector<double>& values, I
 	return is_by_dice(numbers.size(), count, every) ? numbers : numbers_by_dice(count, every);
 }
 
+std::vector<double> signs_by_value(const std::vector<double>& values)
+{
+	std::size_t count = 0;
+	double sum = 0;
+	for (const double value : values) {
+		count += value > 0 ? 1 : 0;
+		sum += std::max(0.0, value);
+	}
+	const double scale = scale_of(sum / static_cast<double>(count));
+	// The highest bit: the lower ones make the samples.
+	const auto is_up = [](double value, double its_scale) {
+		return dice_of(value, its_scale) >> 63U != 0;
+	};
+	std::vector<double> signs(values.size(), 0);
+	std::size_t up = 0;
+	for (std::size_t k = 0; k < values.size(); ++k) {
+		if (!(values[k] > 0))
+			continue;
+		signs[k] = is_up(values[k], scale) ? 1 : -1;
+		up += signs[k] > 0 ? 1 : 0;
+	}
+	if (!is_by_dice(up, count, 2)) {
+		for (std::size_t k = 0; k < values.size(); ++k) {
+			if (signs[k] != 0)
+				signs[k] = is_up(static_cast<double>(k), 1) ? 1 : -1;
+		}
+	}
+	return signs;
+}
+
 std::vector<std::uint8_t>
 choose_evenly(const Workspace& workspace, const std::vector<double>& values, int one_in)
 {

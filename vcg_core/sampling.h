@@ -22,6 +22,10 @@ std::vector<Index> sample_by_value(const std::vector<double>& values, Index want
 /// @param values one an item of the sample; positive
 std::vector<std::size_t> subsample_by_value(const std::vector<double>& values, Index wanted);
 
+/// 1 or -1 for each item by dice, as those of `sample_by_value`: other dice than there.
+/// @param values one an item; those that are not positive get 0
+std::vector<double> signs_by_value(const std::vector<double>& values);
+
 /// #F flags of about one face in so many, everywhere alike: one in so many of any face and those
 /// that share a vertex with it. By the digits of the faces' values too; all faces for one in one,
 /// and where values are all alike.

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "broad_detail.h"
+
+#include "measures.h"
+#include "method_support.h"
+#include "prefilter.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace orthopoly;
+
+namespace {
+
+constexpr double NOISE = 0.2;
+
+// A method that follows noise over few edges only, or over more of them.
+std::vector<Point> smoothed(const TriangleMesh& mesh, double pairs)
+{
+	std::vector<Point> positions = mesh.positions;
+	taubin_smooth(StepFixture(mesh).workspace, pairs, positions);
+	return positions;
+}
+
+/// What a method makes of a mesh, and of it with the probe.
+struct Probed {
+	Probed(const TriangleMesh& mesh, double pairs, double noise = NOISE) :
+			f(mesh), positions(smoothed(mesh, pairs)),
+			detail(f.workspace, noise * f.workspace.mean_edge_length, positions),
+			with_probe(with_positions(mesh, detail.with_probe())),
+			share(detail.share_followed(positions, smoothed(with_probe, pairs)))
+	{
+	}
+
+	std::vector<Point> given_back() const
+	{
+		std::vector<Point> result = positions;
+		detail.give_back(share, result);
+		return result;
+	}
+
+	StepFixture f;
+	std::vector<Point> positions;
+	BroadDetail detail;
+	TriangleMesh with_probe;
+	double share;
+};
+
+double vertex_error(const TriangleMesh& truth, const std::vector<Point>& positions)
+{
+	return measure(with_positions(truth, positions), truth).vertex_error;
+}
+
+} // namespace
+
+TEST_CASE("The probe tells what a method follows of noise", "[broad_detail]")
+{
+	const TriangleMesh mesh = noisy(make_sphere(8000), NOISE);
+	double last = 1;
+	for (const double pairs : {5, 20, 80, 320}) {
+		const Probed probed(mesh, pairs);
+		CAPTURE(pairs);
+		CHECK(probed.share < last);
+		last = probed.share;
+	}
+	CHECK(Probed(mesh, 5).share > 0.85);
+	// Sum of squares over sum of the filter's own response.
+	CHECK(Probed(mesh, 30).share == Approx(0.73).margin(0.06));
+	CHECK(last < 0.5);
+	const Probed probed(mesh, 20);
+	CHECK(probed.detail.share_followed(probed.positions, probed.positions) == 0);
+	// A method that leaves all as it is follows all there is.
+	const std::vector<Point>& measured = mesh.positions;
+	CHECK(
+		probed.detail.share_followed(measured, probed.with_probe.positions) ==
+		Approx(1).margin(1e-3));
+	// A tenth of the noise each way, along the normals.
+	for (std::size_t i = 0; i < measured.size(); ++i) {
+		const double distance = (probed.with_probe.positions[i] - measured[i]).norm();
+		REQUIRE(distance == Approx(0.1 * NOISE * probed.f.workspace.mean_edge_length));
+	}
+}
+
+TEST_CASE("Broad detail is given back, noise is not", "[broad_detail]")
+{
+	for (const double edges : {8.0, 12.0}) {
+		CAPTURE(edges);
+		const TriangleMesh truth = bumpy_sphere(12000, edges, 0.8);
+		const Probed probed(noisy(truth, NOISE), 320);
+		CHECK(probed.detail.certainty(probed.share) == 1);
+		const double before = vertex_error(truth, probed.positions);
+		CHECK(vertex_error(truth, probed.given_back()) < 0.75 * before);
+	}
+	for (const double pairs : {20, 80}) {
+		const Probed probed(noisy(make_flat_grid(80), NOISE), pairs);
+		CHECK(probed.detail.certainty(probed.share) == 0);
+		CHECK(same_bits(probed.given_back(), probed.positions));
+	}
+}
+
+TEST_CASE(
+	"Broad detail does not depend on threads and numbers, nor moves what is fixed",
+	"[broad_detail]")
+{
+	TriangleMesh truth = bumpy_sphere(6000, 10, 0.8);
+	TriangleMesh mesh = noisy(truth, NOISE);
+	const Probed here(mesh, 320);
+	const std::vector<Point> expected = here.given_back();
+	CHECK_FALSE(same_bits(expected, here.positions));
+	const StepFixture f(mesh, 2);
+	const double sigma = NOISE * f.workspace.mean_edge_length;
+	std::vector<Point> positions = here.positions;
+	const BroadDetail detail(f.workspace, sigma, positions);
+	CHECK(same_bits(detail.with_probe(), here.with_probe.positions));
+	detail.give_back(here.share, positions);
+	CHECK(same_bits(positions, expected));
+	const Renumbered other(mesh);
+	const Probed there(other.mesh, 320);
+	CHECK(there.share == Approx(here.share).epsilon(1e-9));
+	const std::vector<Point> back = other.in_given_order(there.given_back());
+	CHECK(largest_distance(back, expected) < 1e-9 * f.workspace.mean_edge_length);
+
+	mesh.fixed.assign(mesh.positions.size(), 0);
+	for (std::size_t i = 0; i < mesh.fixed.size(); i += 3)
+		mesh.fixed[i] = 1;
+	const Probed fixed(mesh, 320);
+	const std::vector<Point> given = fixed.given_back();
+	for (std::size_t i = 0; i < mesh.fixed.size(); i += 3) {
+		REQUIRE(given[i] == mesh.positions[i]);
+		REQUIRE(fixed.with_probe.positions[i] == mesh.positions[i]);
+	}
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "moves.h"
+#include "workspace.h"
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace orthopoly {
+
+/// Gives back the detail, a few edges wide and wider, that a method took along with the noise.
+///
+/// A low-pass filter (Taubin 1995) of what was taken keeps such detail and a ninth of the noise.
+/// What it keeps is added (Tukey's twicing) by the gain that leaves the least square error: one
+/// less the share of it that is noise (Stein 1981). How much noise there is in what was taken
+/// depends on how far the method follows noise itself, which it does the more the more detail it
+/// keeps. So that is measured by a probe: the method is run again with a little noise more, whose
+/// signs are known, and how far the result goes along with these is the trace of its response
+/// (Ramani, Blu, Unser 2008).
+class BroadDetail {
+public:
+	/// @param workspace its mesh as measured; has to outlive this
+	/// @param sigma     the noise that was taken, in the caller's length unit; > 0
+	/// @param positions #V denoised
+	BroadDetail(const Workspace& workspace, double sigma, const std::vector<Point>& positions);
+
+	/// #V as measured, with the probe.
+	std::vector<Point> with_probe() const;
+
+	/// The share of the noise in the filter's band that the method follows, 0 to 1.
+	///
+	/// @param positions #V denoised, as given before
+	/// @param probed    #V the same method's result for `with_probe`
+	/// @param inner     #V flags of the vertices to look at, or empty for all
+	double share_followed(
+		const std::vector<Point>& positions,
+		const std::vector<Point>& probed,
+		const std::vector<std::uint8_t>& inner = {}) const;
+
+	/// How certain it is that detail was taken at those vertices where the method follows that
+	/// share of the noise, 0 to 1.
+	double certainty(double share_followed, const std::vector<std::uint8_t>& inner = {}) const;
+
+	/// Moves the positions, in place; fixed vertices stay bit for bit. O(#V); the same bits on any
+	/// number of threads. Throws Cancelled.
+	void give_back(double share_followed, std::vector<Point>& positions) const;
+
+private:
+	/// Of one vertex, or means over several: products of what was taken and what is kept of
+	/// it, of the probe and what is kept of that, and the square of what is kept.
+	using Products = Eigen::Array3d;
+	Products products(std::size_t vertex) const;
+	/// The mean over those vertices, and how many have faces.
+	struct Mean {
+		Products products;
+		double count;
+	};
+	Mean mean_of(const std::vector<std::uint8_t>& inner) const;
+	static double certainty_of(const Mean& mean, double share_followed);
+	/// The gain that leaves the least.
+	static double gain_for(const Products& products, double share_followed);
+
+	const Workspace& workspace_;
+	double sigma_;
+	Moves moves_;
+	/// #V signs of the probe, zero where it has none.
+	std::vector<double> signs_;
+	/// #V moves and signs that the filter keeps.
+	std::vector<Eigen::Array2d> kept_;
+};
+
+} // namespace orthopoly

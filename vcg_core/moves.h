@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "deviations.h"
+#include "workspace.h"
+
+#include <vector>
+
+namespace orthopoly {
+
+/// How vertices were moved from where they were measured.
+struct Moves {
+	/// Back along the normals, in deviations of the noise: #V; zero where there is no normal.
+	std::vector<double> lengths;
+	/// #V sums of the cross products around, along the normals; zero where there is none.
+	std::vector<Point> crosses;
+};
+
+/// Of the workspace's mesh from `positions` (#V) back to where it was measured. No move counts for
+/// more than three deviations, so that a vertex far off, be it an outlier or moved on purpose, does
+/// not make its surroundings detail.
+Moves moves_along_normals(
+	const Workspace& workspace, const Deviations& sigma, const std::vector<Point>& positions);
+
+/// The same, zero for vertices on edges: those slide along the edge, which no normal of theirs
+/// tells.
+Moves moves_beside_edges(
+	const Workspace& workspace, const Deviations& sigma, const std::vector<Point>& positions);
+
+/// Takes means of #V values over each vertex and its neighbours, these weighed by the faces shared,
+/// so many times.
+template<class Value>
+void average(const Workspace& workspace, int times, std::vector<Value>& values)
+{
+	const std::vector<Face>& faces = workspace.mesh.faces;
+	const IndexLists& around = workspace.vertex_faces;
+	std::vector<Value> sums(faces.size());
+	for (int k = 0; k < times; ++k) {
+		workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
+			const Face& face = faces[i];
+			sums[i] = values[at(face[0])] + values[at(face[1])] + values[at(face[2])];
+		});
+		workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+			const auto vertex = static_cast<Index>(i);
+			const Index* const first = around.begin(vertex);
+			const Index* const end = around.end(vertex);
+			if (first == end)
+				return;
+			Value sum = sums[at(*first)];
+			for (const Index* face = first + 1; face != end; ++face)
+				sum += sums[at(*face)];
+			values[i] = sum / (3.0 * static_cast<double>(end - first));
+		});
+	}
+}
+
+} // namespace orthopoly

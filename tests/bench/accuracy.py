@@ -554,11 +554,14 @@ def verdicts(rows, clean):
 	mild = lambda row: row.get("true_noise") is None or row["true_noise"] <= 0.4  # noqa: E731
 	no_worse = {
 		f"{label} below the noisy mesh's": [
-			row["key"] for row in checked if result(row)[name] >= row["noisy_figures"][name]]
+			row["key"] for row in checked
+			if result(row)[name] >= row["noisy_figures"][name] and row["noisy_figures"]["angle"] > 0]
 		for label, name in (("angle", "angle"), ("MSAE", "msae"), ("E_v", "vertex_error"))
 	}
-	# Impulsive noise has no one level, and that of scans is correlated.
-	white = [row for row in estimated(rows) if row["kind"] != "impulsive" and not of_scan(row)]
+	# Impulsive noise has no one level, and that of scans and of terraces is correlated.
+	white = [
+		row for row in estimated(rows)
+		if row["kind"] not in ("impulsive", "rounded") and not of_scan(row)]
 	# Those of the truth are not the method's.
 	folded = lambda row: result(row)["folded_faces"] - result(row)["folded_in_truth"]  # noqa: E731
 	found = {

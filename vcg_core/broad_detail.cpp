@@ -38,7 +38,7 @@ constexpr double LARGEST_GAIN = 1.2;
 // by what is likely chance among so many vertices: this over the root of their number.
 constexpr double GAIN_OF_NOISE = 0.25;
 constexpr double GAIN_OF_DETAIL = 0.45;
-constexpr double CHANCE = 12;
+constexpr double CHANCE = 20;
 
 // The filter (see taubin_smooth) of values at the vertices.
 void keep_broad(const Workspace& workspace, std::vector<Eigen::Array2d>& values)

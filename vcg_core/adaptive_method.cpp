@@ -657,30 +657,29 @@ void give_back_broad_detail(
 	const DenoiseOptions& options,
 	std::vector<Point>& positions)
 {
-	const auto denoised = [&](const TriangleMesh& mesh) {
-		const Workspace its_workspace(mesh, workspace.execution);
+	const auto denoised = [&](const Workspace& its_workspace) {
 		// Levels are in edge lengths, which differ.
 		const double scale = workspace.mean_edge_length / its_workspace.mean_edge_length;
 		const Plan plan = plan_for(options, scale * level, {});
-		std::vector<Point> result = mesh.positions;
+		std::vector<Point> result = its_workspace.mesh.positions;
 		AdaptiveMethod(its_workspace, plan, {}, result).run();
 		return result;
 	};
-	const auto with_probe = [](TriangleMesh mesh, const BroadDetail& detail) {
+	const auto denoised_with_probe = [&](TriangleMesh mesh, const BroadDetail& detail) {
 		mesh.positions = detail.with_probe();
-		return mesh;
+		return denoised(Workspace(mesh, workspace.execution));
 	};
 	if (workspace.mesh.face_count() <= MOST_PROBED) {
 		const BroadDetail detail(workspace, sigma, positions);
-		const std::vector<Point> probed = denoised(with_probe(workspace.mesh, detail));
+		const std::vector<Point> probed = denoised_with_probe(workspace.mesh, detail);
 		detail.give_back(detail.share_followed(positions, probed), positions);
 		return;
 	}
 	const MeshPart part = cut_out_places(workspace);
 	const Workspace part_workspace(part.mesh, workspace.execution);
-	const std::vector<Point> plain = denoised(part.mesh);
+	const std::vector<Point> plain = denoised(part_workspace);
 	const BroadDetail detail(part_workspace, sigma, plain);
-	const std::vector<Point> probed = denoised(with_probe(part.mesh, detail));
+	const std::vector<Point> probed = denoised_with_probe(part.mesh, detail);
 	const double followed = detail.share_followed(plain, probed, part.inner);
 	if (detail.certainty(followed, part.inner) > 0)
 		BroadDetail(workspace, sigma, positions).give_back(followed, positions);

@@ -82,21 +82,25 @@ std::vector<Point> BroadDetail::with_probe() const
 	return positions;
 }
 
+template<class Value>
+double BroadDetail::sum(const std::vector<std::uint8_t>& inner, const Value& value) const
+{
+	return workspace_.execution.sum(workspace_.mesh.vertex_count(), [&](Index vertex) {
+		const std::size_t i = at(vertex);
+		const bool counts = !moves_.crosses[i].isZero(0) && (inner.empty() || inner[i] != 0);
+		return counts ? value(i) : 0.0;
+	});
+}
+
 double BroadDetail::share_followed(
 	const std::vector<Point>& positions,
 	const std::vector<Point>& probed,
 	const std::vector<std::uint8_t>& inner) const
 {
-	const auto sum = [&](auto value) {
-		return workspace_.execution.sum(workspace_.mesh.vertex_count(), [&](Index vertex) {
-			const std::size_t i = at(vertex);
-			const bool counts =
-				signs_[i] != 0 && moves_.lengths[i] != 0 && (inner.empty() || inner[i] != 0);
-			return counts ? value(i) : 0.0;
-		});
-	};
-	const double kept = sum([&](std::size_t i) { return signs_[i] * kept_[i][1]; });
-	const double followed = sum([&](std::size_t i) {
+	const double kept = sum(inner, [&](std::size_t i) { return products(i)[1]; });
+	const double followed = sum(inner, [&](std::size_t i) {
+		if (!is_probed(i))
+			return 0.0;
 		const Point normal = moves_.crosses[i].normalized();
 		const double response = (probed[i] - positions[i]).dot(normal) / (PROBE * sigma_);
 		return kept_[i][1] * std::max(-LARGEST_RESPONSE, std::min(LARGEST_RESPONSE, response));
@@ -106,25 +110,16 @@ double BroadDetail::share_followed(
 
 BroadDetail::Products BroadDetail::products(std::size_t vertex) const
 {
-	const double move = moves_.lengths[vertex];
 	const double kept = kept_[vertex][0];
-	// Edges take no part.
-	const double noise = move != 0 ? signs_[vertex] * kept_[vertex][1] : 0;
-	return {move * kept, noise, kept * kept};
+	const double noise = is_probed(vertex) ? signs_[vertex] * kept_[vertex][1] : 0;
+	return {moves_.lengths[vertex] * kept, noise, kept * kept};
 }
 
 BroadDetail::Mean BroadDetail::mean_of(const std::vector<std::uint8_t>& inner) const
 {
-	const auto sum = [&](auto value) {
-		return workspace_.execution.sum(workspace_.mesh.vertex_count(), [&](Index vertex) {
-			const std::size_t i = at(vertex);
-			const bool counts = !moves_.crosses[i].isZero(0) && (inner.empty() || inner[i] != 0);
-			return counts ? value(i) : 0.0;
-		});
-	};
-	Mean mean = {Products::Zero(), sum([](std::size_t) { return 1.0; })};
+	Mean mean = {Products::Zero(), sum(inner, [](std::size_t) { return 1.0; })};
 	for (Eigen::Index k = 0; mean.count > 0 && k < mean.products.size(); ++k)
-		mean.products[k] = sum([&](std::size_t i) { return products(i)[k]; }) / mean.count;
+		mean.products[k] = sum(inner, [&](std::size_t i) { return products(i)[k]; }) / mean.count;
 	return mean;
 }
 

@@ -48,6 +48,15 @@ public:
 	void give_back(double share_followed, std::vector<Point>& positions) const;
 
 private:
+	/// Where the probe says something: edges take no part.
+	bool is_probed(std::size_t vertex) const
+	{
+		return signs_[vertex] != 0 && moves_.lengths[vertex] != 0;
+	}
+	/// Of the values of those vertices that have faces.
+	template<class Value>
+	double sum(const std::vector<std::uint8_t>& inner, const Value& value) const;
+
 	/// Of one vertex, or means over several: products of what was taken and what is kept of
 	/// it, of the probe and what is kept of that, and the square of what is kept.
 	using Products = Eigen::Array3d;

@@ -84,29 +84,31 @@ double lattice_step(const Workspace& workspace, const std::vector<Point>& positi
 	double unit = quantile(differences, SHARE_OF_STEPS);
 	if (!(unit > 0))
 		return 0;
-	for (const double most : NARROWING) {
-		double products = 0;
-		double sum = 0;
+	const auto each_multiple = [&](double most, auto visit) {
 		for (const double square : squares) {
 			const double multiple = std::round(square / unit);
 			if (multiple > most)
 				break;
+			visit(square, multiple);
+		}
+	};
+	for (const double most : NARROWING) {
+		double products = 0;
+		double sum = 0;
+		each_multiple(most, [&](double square, double multiple) {
 			products += multiple * square;
 			sum += multiple * multiple;
-		}
+		});
 		if (sum > 0)
 			unit = products / sum;
 	}
 	double on = 0;
 	double all = 0;
-	for (const double square : squares) {
-		const double multiple = std::round(square / unit);
-		if (multiple > MOST)
-			break;
+	each_multiple(MOST, [&](double square, double multiple) {
 		all += 1;
 		if (std::abs(square / unit - multiple) < OFF && is_sum_of_three_squares(multiple))
 			on += 1;
-	}
+	});
 	const double step = std::sqrt(unit);
 	return on > ON_LATTICE * all && step > LEAST_LATTICE_STEP ? step : 0;
 }

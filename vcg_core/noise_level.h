@@ -32,14 +32,14 @@ struct NoiseLevels {
 	/// Share of the level that is not there, 0 to 1: of surfaces that were drawn with their faces
 	/// in planes, or where but some vertices are outliers.
 	double drawn = 0;
-	/// Of coordinates that were rounded to a lattice (see lattice_step); zero where they were not,
-	/// and where no more than that would leave is seen of it, as on what was drawn on a lattice.
-	double rounding = 0;
 	/// The same with what is taken for detail: noise that goes together over several edges grows
 	/// like it.
 	double rough = 0;
 	/// In ordinary places: with rare outliers, and on coarse meshes some of the surface itself.
 	double ordinary = 0;
+	/// Of coordinates that were rounded to a lattice (see lattice_step); zero where they were not,
+	/// and where what that would leave is not seen, as on what was drawn on a lattice.
+	double rounding = 0;
 	/// Median ratio of the residuals of wide polynomials (see LocalHeights): 1 where the noise is
 	/// Gaussian, 0.8 where its directions are random, two thirds where it is impulsive.
 	double median_ratio = 1;

@@ -3,8 +3,9 @@
 """Runs clang-tidy over vcg_core and filter_orthopoly, each source once, and fails on any finding.
 
 A source is compiled several times in a build (each host, each vcglib); here the newest host of single
-precision stands for all. What was found clean is remembered in the build folder until a header, the
-source, its command or .clang-tidy changes.
+precision stands for all. The build folder has to be configured without unity builds, and need not be
+built. What was found clean is remembered there until a header, the source, its command or .clang-tidy
+changes.
 """
 
 import argparse
@@ -55,7 +56,7 @@ def main():
 	commands = chosen_commands(arguments.build)
 	if not commands:
 		sys.exit("no source of " + " or ".join(ROOMS) + " in compile_commands.json")
-	folder = arguments.build / "tidy"
+	folder = arguments.build / "chosen"
 	clean = folder / "clean"
 	clean.mkdir(parents=True, exist_ok=True)
 	(folder / "compile_commands.json").write_text(json.dumps(list(commands.values()), indent=1))

@@ -15,11 +15,6 @@ using namespace orthopoly;
 
 namespace {
 
-std::vector<Index> list(const IndexLists& lists, Index index)
-{
-	return {lists.begin(index), lists.end(index)};
-}
-
 std::vector<Index> list(const IndexSpan& span)
 {
 	return {span.begin(), span.end()};

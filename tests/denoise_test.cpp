@@ -5,6 +5,7 @@
 #include "defects.h"
 #include "errors.h"
 #include "measures.h"
+#include "method_support.h"
 #include "noise.h"
 #include "parameters.h"
 #include "recipes.h"
@@ -42,12 +43,6 @@ DenoiseOptions options_of(Method method)
 	options.method = method;
 	options.threads = 1;
 	return options;
-}
-
-DenoiseResult run(const TriangleMesh& mesh, const DenoiseOptions& options)
-{
-	Progress progress;
-	return denoise(mesh, options, progress);
 }
 
 double
@@ -133,7 +128,7 @@ TEST_CASE("noise on every kind of surface is reduced", "[denoise][slow]")
 	const double sigma = GENERATE(0.1, 0.25);
 	const TriangleMesh truth = find_recipe(name).make(6000);
 	const TriangleMesh noisy = with_noise(truth, sigma);
-	const DenoiseResult result = run(noisy, options_of(method));
+	const DenoiseResult result = denoised(noisy, options_of(method));
 	CAPTURE(name, sigma, static_cast<int>(method));
 	CHECK(result.status == Status::Done);
 	const double before = mean_angle(noisy, noisy.positions, truth);
@@ -152,7 +147,7 @@ TEST_CASE("the result says what was done", "[denoise]")
 {
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
 	const TriangleMesh noisy = with_noise(make_torus(2000), 0.2);
-	const DenoiseResult result = run(noisy, options_of(method));
+	const DenoiseResult result = denoised(noisy, options_of(method));
 	CHECK(result.status == Status::Done);
 	CHECK(result.resolved.method == method);
 	CHECK(result.iterations_done == result.resolved.iterations);
@@ -173,8 +168,8 @@ TEST_CASE("the resolved options give the same result again", "[denoise]")
 	// The first iteration of the adaptive method counts for nothing, for a part, and in full.
 	const auto sigma = GENERATE(0.1, 0.15, 0.2);
 	const TriangleMesh noisy = with_noise(make_part(4000), sigma);
-	const DenoiseResult first = run(noisy, options_of(method));
-	const DenoiseResult second = run(noisy, first.resolved);
+	const DenoiseResult first = denoised(noisy, options_of(method));
+	const DenoiseResult second = denoised(noisy, first.resolved);
 	CHECK(same_bits(first.positions, second.positions));
 	CHECK(second.resolved.iterations == first.resolved.iterations);
 	CHECK(second.resolved.noise_level == first.resolved.noise_level);
@@ -186,7 +181,7 @@ TEST_CASE("the widest guides resolve to a structure ring that is accepted", "[de
 	DenoiseOptions options = options_of(Method::Paper);
 	options.guide_ring = 10;
 	options.iterations = 1;
-	const DenoiseResult result = run(with_noise(make_part(600), 0.2), options);
+	const DenoiseResult result = denoised(with_noise(make_part(600), 0.2), options);
 	CHECK(result.resolved.structure_ring == 10);
 	CHECK_NOTHROW(validate(result.resolved));
 }
@@ -197,7 +192,7 @@ TEST_CASE("every class of mesh gets through every method", "[denoise]")
 	for (auto& [name, mesh] : mesh_classes()) {
 		CAPTURE(name, static_cast<int>(method));
 		const TriangleMesh before = mesh;
-		const DenoiseResult result = run(mesh, options_of(method));
+		const DenoiseResult result = denoised(mesh, options_of(method));
 		check_result(mesh, result);
 		CHECK(result.moved_vertices > 0);
 		// The input is as it was.
@@ -218,7 +213,7 @@ TEST_CASE("every class of mesh gets through every option", "[denoise][slow]")
 				DenoiseOptions options = options_of(setting.method);
 				apply(setting.others, options);
 				set_parameter(denoise_parameters(), name, setting.value, options);
-				check_result(mesh, run(mesh, options));
+				check_result(mesh, denoised(mesh, options));
 			}
 		}
 		// Both ends of every range, as far as they may be combined with the rest.
@@ -232,7 +227,7 @@ TEST_CASE("every class of mesh gets through every option", "[denoise][slow]")
 					options.iterations = 1;
 					options.vertex_iterations = 2;
 					parameter.set(options, std::min(value, 60.0));
-					check_result(mesh, run(mesh, options));
+					check_result(mesh, denoised(mesh, options));
 				}
 			}
 		}
@@ -245,7 +240,7 @@ TEST_CASE("every parameter changes the result, the number of threads does not", 
 	const TriangleMesh mesh = with_noise(make_height_field(2500), 0.2, NoiseDirection::Random);
 	std::map<Method, std::vector<Point>> defaults;
 	for (const auto method : {Method::Adaptive, Method::Paper})
-		defaults[method] = run(mesh, options_of(method)).positions;
+		defaults[method] = denoised(mesh, options_of(method)).positions;
 	for (const Parameter<DenoiseOptions>& parameter : denoise_parameters()) {
 		CAPTURE(parameter.name);
 		REQUIRE(settings().count(parameter.name) == 1);
@@ -253,10 +248,11 @@ TEST_CASE("every parameter changes the result, the number of threads does not", 
 			CAPTURE(setting.value);
 			DenoiseOptions options = options_of(setting.method);
 			apply(setting.others, options);
-			const std::vector<Point> without =
-				setting.others.empty() ? defaults.at(setting.method) : run(mesh, options).positions;
+			const std::vector<Point> without = setting.others.empty() ?
+												   defaults.at(setting.method) :
+												   denoised(mesh, options).positions;
 			set_parameter(denoise_parameters(), parameter.name, setting.value, options);
-			const std::vector<Point> with = run(mesh, options).positions;
+			const std::vector<Point> with = denoised(mesh, options).positions;
 			CHECK(same_bits(with, without) == (parameter.name == "threads"));
 		}
 	}
@@ -270,7 +266,7 @@ TEST_CASE("more strength takes away more", "[denoise]")
 	std::vector<double> displacements;
 	for (const Strength strength : {Strength::Gentle, Strength::Normal, Strength::Strong}) {
 		options.strength = strength;
-		displacements.push_back(run(noisy, options).mean_displacement);
+		displacements.push_back(denoised(noisy, options).mean_displacement);
 	}
 	CHECK(displacements[0] < displacements[1]);
 	CHECK(displacements[1] < displacements[2]);
@@ -285,7 +281,7 @@ TEST_CASE("fixed vertices stay bit for bit", "[denoise]")
 	{
 		for (std::size_t i = 0; i < mesh.fixed.size() / 2; ++i)
 			mesh.fixed[i] = 1;
-		const DenoiseResult result = run(mesh, options_of(method));
+		const DenoiseResult result = denoised(mesh, options_of(method));
 		check_result(mesh, result);
 		CHECK(result.moved_vertices > 0);
 		CHECK(result.moved_vertices <= mesh.vertex_count() - mesh.vertex_count() / 2);
@@ -293,7 +289,7 @@ TEST_CASE("fixed vertices stay bit for bit", "[denoise]")
 	SECTION("all")
 	{
 		mesh.fixed.assign(mesh.positions.size(), 1);
-		const DenoiseResult result = run(mesh, options_of(method));
+		const DenoiseResult result = denoised(mesh, options_of(method));
 		CHECK(same_bits(result.positions, mesh.positions));
 		CHECK(result.moved_vertices == 0);
 	}
@@ -306,9 +302,9 @@ TEST_CASE("a kept boundary stays bit for bit, the rest moves", "[denoise]")
 	const std::vector<std::uint8_t> boundary = edge_defects(mesh).boundary;
 	DenoiseOptions options = options_of(method);
 	options.keep_boundary = true;
-	const DenoiseResult kept = run(mesh, options);
+	const DenoiseResult kept = denoised(mesh, options);
 	options.keep_boundary = false;
-	const DenoiseResult free = run(mesh, options);
+	const DenoiseResult free = denoised(mesh, options);
 	Index moved = 0;
 	for (std::size_t i = 0; i < boundary.size(); ++i) {
 		if (boundary[i] != 0) {
@@ -326,7 +322,7 @@ TEST_CASE("a kept boundary stays bit for bit, the rest moves", "[denoise]")
 		static_cast<std::size_t>(std::find(boundary.begin(), boundary.end(), 0) - boundary.begin());
 	fixed.fixed[inner] = 1;
 	options.keep_boundary = true;
-	const DenoiseResult both = run(fixed, options);
+	const DenoiseResult both = denoised(fixed, options);
 	CHECK(same_bits({both.positions[inner]}, {mesh.positions[inner]}));
 	CHECK(both.moved_vertices == kept.moved_vertices - 1);
 }
@@ -336,16 +332,16 @@ TEST_CASE("the result is the same bit for bit on any number of threads", "[denoi
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
 	const TriangleMesh mesh = with_noise(make_part(3000), 0.25, NoiseDirection::Random);
 	DenoiseOptions options = options_of(method);
-	const DenoiseResult one = run(mesh, options);
+	const DenoiseResult one = denoised(mesh, options);
 	for (const int threads : {2, 3, 8}) {
 		options.threads = threads;
-		const DenoiseResult many = run(mesh, options);
+		const DenoiseResult many = denoised(mesh, options);
 		CHECK(same_bits(many.positions, one.positions));
 		CHECK(many.estimated_noise == one.estimated_noise);
 		CHECK(many.resolved.threads == threads);
 	}
 	// And the same when run again.
-	CHECK(same_bits(run(mesh, options).positions, one.positions));
+	CHECK(same_bits(denoised(mesh, options).positions, one.positions));
 }
 
 TEST_CASE("the size of the mesh does not matter", "[denoise][slow]")
@@ -353,12 +349,12 @@ TEST_CASE("the size of the mesh does not matter", "[denoise][slow]")
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
 	const TriangleMesh truth = make_part(3000);
 	const TriangleMesh mesh = with_noise(truth, 0.2);
-	const DenoiseResult here = run(mesh, options_of(method));
+	const DenoiseResult here = denoised(mesh, options_of(method));
 
 	SECTION("powers of two change no other bit")
 	{
 		const double scale = GENERATE(0x1p-40, 0x1p-20, 0x1p20, 0x1p40);
-		const DenoiseResult there = run(placed(mesh, scale), options_of(method));
+		const DenoiseResult there = denoised(placed(mesh, scale), options_of(method));
 		TriangleMesh expected = mesh;
 		expected.positions = here.positions;
 		CHECK(same_bits(there.positions, placed(expected, scale).positions));
@@ -370,7 +366,7 @@ TEST_CASE("the size of the mesh does not matter", "[denoise][slow]")
 		// At a million times the size, coordinates are good to 1e-10 of it.
 		const Point offset = GENERATE(Point(0, 0, 0), Point(1, -2, 3)) * (1e6 * scale);
 		const TriangleMesh moved = placed(mesh, scale, offset);
-		const DenoiseResult there = run(moved, options_of(method));
+		const DenoiseResult there = denoised(moved, options_of(method));
 		check_result(moved, there);
 		const double expected = mean_angle(mesh, here.positions, truth);
 		CHECK(
@@ -393,8 +389,8 @@ TEST_CASE("vertices without a face, however many and far, change nothing", "[den
 		for (Index& corner : face)
 			corner += strays;
 	}
-	const DenoiseResult expected = run(mesh, options_of(method));
-	const DenoiseResult result = run(littered, options_of(method));
+	const DenoiseResult expected = denoised(mesh, options_of(method));
+	const DenoiseResult result = denoised(littered, options_of(method));
 	CHECK(result.estimated_noise == expected.estimated_noise);
 	CHECK(
 		same_bits({result.positions.begin() + strays, result.positions.end()}, expected.positions));
@@ -407,14 +403,14 @@ TEST_CASE("a number that stands for automatic is as good as none", "[denoise]")
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
 	const TriangleMesh mesh = with_noise(make_part(2000), 0.2);
 	DenoiseOptions options = options_of(method);
-	const DenoiseResult expected = run(mesh, options);
+	const DenoiseResult expected = denoised(mesh, options);
 	options.noise_level = AUTOMATIC;
 	options.iterations = -1;
 	options.vertex_iterations = -1;
 	options.structure_ring = -1;
 	options.cos_threshold = AUTOMATIC;
 	options.cos_threshold_increment = AUTOMATIC;
-	const DenoiseResult result = run(mesh, options);
+	const DenoiseResult result = denoised(mesh, options);
 	CHECK(same_bits(result.positions, expected.positions));
 	CHECK(result.iterations_done == expected.iterations_done);
 	CHECK(result.status == Status::Done);
@@ -433,10 +429,11 @@ TEST_CASE("a turned mesh is denoised as well", "[denoise]")
 				0.48 * point.x() + 0.64 * point.y() + 0.6 * point.z());
 		return turning;
 	};
-	const double expected = mean_angle(mesh, run(mesh, options_of(method)).positions, truth);
+	const double expected = mean_angle(mesh, denoised(mesh, options_of(method)).positions, truth);
 	const TriangleMesh turned_mesh = turned(mesh);
 	CHECK(
-		mean_angle(turned_mesh, run(turned_mesh, options_of(method)).positions, turned(truth)) ==
+		mean_angle(
+			turned_mesh, denoised(turned_mesh, options_of(method)).positions, turned(truth)) ==
 		Approx(expected).epsilon(0.05));
 }
 
@@ -444,7 +441,7 @@ TEST_CASE("clean meshes are left as they are, or very nearly", "[denoise]")
 {
 	const std::string name = GENERATE("cube", "sphere", "torus", "part");
 	const TriangleMesh mesh = find_recipe(name).make(8000);
-	const DenoiseResult result = run(mesh, options_of(Method::Adaptive));
+	const DenoiseResult result = denoised(mesh, options_of(Method::Adaptive));
 	CAPTURE(name);
 	CHECK(result.max_displacement < 0.05 * mean_edge_length(mesh.positions, mesh.faces));
 	if (result.status == Status::NothingToDo) {
@@ -458,7 +455,7 @@ TEST_CASE("thin plates keep their two sides apart", "[denoise]")
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
 	const TriangleMesh truth = find_recipe("thin_plate").make_default();
 	const TriangleMesh mesh = with_noise(truth, 0.1);
-	const DenoiseResult result = run(mesh, options_of(method));
+	const DenoiseResult result = denoised(mesh, options_of(method));
 	const double thickness = mean_edge_length(truth.positions, truth.faces);
 	// Away from the rim, where the rounding of the edges is no part of the question.
 	double worst = 0;
@@ -509,7 +506,7 @@ TEST_CASE("a cancel leaves the positions as they were, whenever it comes", "[den
 	const TriangleMesh mesh = with_noise(make_part(1500), 0.2);
 	DenoiseOptions options = options_of(method);
 	options.threads = threads;
-	const std::vector<Point> finished = run(mesh, options).positions;
+	const std::vector<Point> finished = denoised(mesh, options).positions;
 	int reports = 0;
 	Progress counting([&](int, const std::string&) {
 		++reports;
@@ -595,23 +592,23 @@ TEST_CASE("meshes that cannot be denoised are refused with reason and cure", "[d
 {
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
 	const DenoiseOptions options = options_of(method);
-	CHECK_THROWS_AS(run(make_empty(), options), InvalidMesh);
-	CHECK_THROWS_WITH(run(make_empty(), options), Contains("0 vertices and no faces"));
+	CHECK_THROWS_AS(denoised(make_empty(), options), InvalidMesh);
+	CHECK_THROWS_WITH(denoised(make_empty(), options), Contains("0 vertices and no faces"));
 	CHECK_THROWS_WITH(
-		run(make_points_only(), options),
+		denoised(make_points_only(), options),
 		Contains("218 vertices and no faces") && Contains("reconstruct"));
 	CHECK_THROWS_WITH(
-		run(make_nan_coordinate(), options), Contains("vertex 7") && Contains("repair"));
+		denoised(make_nan_coordinate(), options), Contains("vertex 7") && Contains("repair"));
 	TriangleMesh mesh = unit_square();
 	mesh.faces[1][2] = 17;
-	CHECK_THROWS_AS(run(mesh, options), InvalidMesh);
-	CHECK_THROWS_WITH(run(mesh, options), Contains("face 1") && Contains("index 17"));
+	CHECK_THROWS_AS(denoised(mesh, options), InvalidMesh);
+	CHECK_THROWS_WITH(denoised(mesh, options), Contains("face 1") && Contains("index 17"));
 	mesh = unit_square();
 	mesh.positions.assign(4, Point(3, 3, 3));
-	CHECK_THROWS_WITH(run(mesh, options), Contains("none of the 2 faces"));
+	CHECK_THROWS_WITH(denoised(mesh, options), Contains("none of the 2 faces"));
 	mesh = unit_square();
 	mesh.fixed = {1, 0};
-	CHECK_THROWS_WITH(run(mesh, options), Contains("2 fixed flags for 4"));
+	CHECK_THROWS_WITH(denoised(mesh, options), Contains("2 fixed flags for 4"));
 }
 
 TEST_CASE("options out of their range are refused before any work", "[denoise]")
@@ -644,7 +641,7 @@ TEST_CASE("the least of meshes are no trouble", "[denoise]")
 	triangle.positions = {Point(0, 0, 0), Point(1, 0, 0), Point(0, 1, 0)};
 	triangle.faces = {{0, 1, 2}};
 	for (const TriangleMesh& mesh : {triangle, unit_square(), tetrahedron(), make_cube(12)}) {
-		const DenoiseResult result = run(mesh, options_of(method));
+		const DenoiseResult result = denoised(mesh, options_of(method));
 		check_result(mesh, result);
 		// Flat stays flat.
 		if (mesh.face_count() <= 2) {

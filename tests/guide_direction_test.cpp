@@ -14,13 +14,6 @@ using namespace orthopoly;
 
 namespace {
 
-const double PI = std::acos(-1.0);
-
-double angle(const Point& a, const Point& b)
-{
-	return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 // Ring by ring over shared vertices, without any of the library's connectivity.
 std::set<std::size_t> ring_by_definition(const TriangleMesh& mesh, std::size_t face, int rings)
 {
@@ -53,7 +46,7 @@ Point guide_by_definition(const StepFixture& f, std::size_t i, const GuideDirect
 	Point mean = Point::Zero();
 	for (const std::size_t j : structure) {
 		const double x = (g.centroids[i] - g.centroids[j]).norm();
-		const double theta = angle(g.normals[i], g.normals[j]);
+		const double theta = angle_between(g.normals[i], g.normals[j]);
 		const double eta = std::exp(-std::pow(x / sigma_p, 2));
 		const double phi = std::exp(
 			-std::pow((1 - std::cos(theta)) / (1 - std::cos(options.sigma_theta * PI / 180)), 2));
@@ -98,7 +91,8 @@ TEST_CASE("A guide direction is the sum of eqs. 1 to 4", "[guide_direction]")
 			const std::vector<Point> found = guides(f, options);
 			double worst = 0;
 			for (std::size_t i = 0; i < found.size(); i += 37)
-				worst = std::max(worst, angle(found[i], guide_by_definition(f, i, options)));
+				worst =
+					std::max(worst, angle_between(found[i], guide_by_definition(f, i, options)));
 			CHECK(worst < 1e-7);
 		}
 	}
@@ -137,8 +131,8 @@ TEST_CASE("On a noisy cube guide directions are nearer the truth than normals", 
 	double guide_sum = 0;
 	double normal_sum = 0;
 	for (std::size_t i = 0; i < v.size(); ++i) {
-		guide_sum += angle(v[i], truth.normals[i]);
-		normal_sum += angle(f.geometry.normals[i], truth.normals[i]);
+		guide_sum += angle_between(v[i], truth.normals[i]);
+		normal_sum += angle_between(f.geometry.normals[i], truth.normals[i]);
 	}
 	CHECK(guide_sum < 0.8 * normal_sum);
 }

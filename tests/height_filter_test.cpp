@@ -12,8 +12,6 @@ using namespace orthopoly;
 
 namespace {
 
-constexpr double DEGREE = 3.14159265358979323846 / 180;
-
 HeightFilterOptions options_of(double sigma, int smallest, int largest)
 {
 	HeightFilterOptions options;
@@ -21,20 +19,6 @@ HeightFilterOptions options_of(double sigma, int smallest, int largest)
 	options.smallest_ring = smallest;
 	options.largest_ring = largest;
 	return options;
-}
-
-double degrees_between(const Point& a, const Point& b)
-{
-	return std::atan2(a.cross(b).norm(), a.dot(b)) / DEGREE;
-}
-
-template<class Expected>
-double mean_angle(const std::vector<Point>& normals, Expected expected)
-{
-	double sum = 0;
-	for (std::size_t i = 0; i < normals.size(); ++i)
-		sum += degrees_between(normals[i], expected(i));
-	return sum / static_cast<double>(normals.size());
 }
 
 // The height of a cubic surface over [0, 1]^2, gentle enough for one guide.

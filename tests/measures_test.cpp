@@ -21,8 +21,6 @@ using Catch::Contains;
 
 namespace {
 
-const double PI = std::acos(-1.0);
-
 // The square of side 1 turned around the x axis.
 TriangleMesh tilted_square(double degrees)
 {

@@ -5,6 +5,7 @@
 #include "inspection.h"
 #include "recipes.h"
 #include "shapes.h"
+#include "test_support.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -16,8 +17,6 @@
 using namespace orthopoly;
 
 namespace {
-
-const double PI = std::acos(-1.0);
 
 const Point& corner(const TriangleMesh& mesh, std::size_t face, std::size_t k)
 {

@@ -12,13 +12,6 @@
 
 namespace orthopoly {
 
-/// The mesh with other positions.
-inline TriangleMesh with_positions(TriangleMesh mesh, std::vector<Point> positions)
-{
-	mesh.positions = std::move(positions);
-	return mesh;
-}
-
 /// The mesh with its coordinates rounded to steps of so many mean edge lengths.
 inline TriangleMesh rounded(TriangleMesh mesh, double step)
 {
@@ -47,6 +40,14 @@ inline DenoiseResult denoised(const TriangleMesh& mesh, const DenoiseOptions& op
 {
 	Progress progress;
 	return denoise(mesh, options, progress);
+}
+
+/// The same with every parameter at its default.
+inline DenoiseResult denoised(const TriangleMesh& mesh, int threads = 1)
+{
+	DenoiseOptions options;
+	options.threads = threads;
+	return denoised(mesh, options);
 }
 
 /// The same mesh with its vertices and faces in another order, and the way back.

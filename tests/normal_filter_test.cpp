@@ -14,8 +14,6 @@ using namespace orthopoly;
 
 namespace {
 
-constexpr double DEGREE = 3.14159265358979323846 / 180;
-
 NormalField field_of(const FaceGeometry& geometry)
 {
 	return {geometry.normals, geometry.normals, geometry.areas, geometry.centroids};
@@ -27,20 +25,6 @@ NormalFilterOptions rings(int smallest, int largest)
 	options.smallest_ring = smallest;
 	options.largest_ring = largest;
 	return options;
-}
-
-double degrees_between(const Point& a, const Point& b)
-{
-	return std::atan2(a.cross(b).norm(), a.dot(b)) / DEGREE;
-}
-
-template<class Expected>
-double mean_angle(const std::vector<Point>& normals, Expected expected)
-{
-	double sum = 0;
-	for (std::size_t i = 0; i < normals.size(); ++i)
-		sum += degrees_between(normals[i], expected(i));
-	return sum / static_cast<double>(normals.size());
 }
 
 bool all_unit(const std::vector<Point>& normals)
@@ -139,7 +123,7 @@ TEST_CASE("Both sides of a sharp edge keep to themselves", "[normal_filter]")
 	CHECK(mean_angle(field.data, truth) > 8);
 	double worst = 0;
 	for (std::size_t i = 0; i < found.size(); ++i)
-		worst = std::max(worst, degrees_between(found[i], truth(i)));
+		worst = std::max(worst, angle_between(found[i], truth(i)) / DEGREE);
 	CHECK(worst < 8);
 	CHECK(mean_angle(found, truth) < 2);
 }
@@ -172,7 +156,7 @@ TEST_CASE("A bend beyond the threshold is kept, one within is taken along", "[no
 		const std::vector<Point> found = filter_normals(f.workspace, field_of(f.geometry), options);
 		double worst = 0;
 		for (std::size_t i = 0; i < found.size(); ++i)
-			worst = std::max(worst, degrees_between(found[i], f.geometry.normals[i]));
+			worst = std::max(worst, angle_between(found[i], f.geometry.normals[i]) / DEGREE);
 		return worst;
 	};
 	CHECK(largest_change(std::cos(38 * DEGREE)) < 1e-6);

@@ -4,6 +4,7 @@
 #include "adjacency.h"
 #include "errors.h"
 #include "measures.h"
+#include "method_support.h"
 #include "recipes.h"
 #include "step_fixture.h"
 
@@ -25,16 +26,9 @@ DenoiseOptions paper_options()
 	return options;
 }
 
-DenoiseResult run(const TriangleMesh& mesh, const DenoiseOptions& options = paper_options())
+DenoiseResult paper(const TriangleMesh& mesh, const DenoiseOptions& options = paper_options())
 {
-	Progress progress;
-	return denoise(mesh, options, progress);
-}
-
-TriangleMesh with_positions(TriangleMesh mesh, std::vector<Point> positions)
-{
-	mesh.positions = std::move(positions);
-	return mesh;
+	return denoised(mesh, options);
 }
 
 } // namespace
@@ -49,7 +43,7 @@ TEST_CASE("The paper's method leaves a plane where it is", "[paper_method]")
 				return Point(scale * (rotation * p + Point::Constant(distance)));
 			});
 			const double rounding = 1e-15 * scale * (1 + distance);
-			CHECK(largest_distance(run(mesh).positions, mesh.positions) < 200 * rounding);
+			CHECK(largest_distance(paper(mesh).positions, mesh.positions) < 200 * rounding);
 		}
 	}
 }
@@ -63,7 +57,7 @@ TEST_CASE("The paper's method flattens a noisy plane", "[paper_method]")
 			sum += p.z() * p.z();
 		return sum;
 	};
-	CHECK(roughness(run(mesh).positions) < 0.1 * roughness(mesh.positions));
+	CHECK(roughness(paper(mesh).positions) < 0.1 * roughness(mesh.positions));
 }
 
 TEST_CASE("The paper's method keeps the edges of a cube sharp", "[paper_method]")
@@ -71,7 +65,7 @@ TEST_CASE("The paper's method keeps the edges of a cube sharp", "[paper_method]"
 	for (const NoiseDirection direction : {NoiseDirection::Normal, NoiseDirection::Random}) {
 		const TriangleMesh cube = make_cube(3000);
 		const TriangleMesh mesh = noisy(cube, 0.15, direction);
-		const TriangleMesh result = with_positions(mesh, run(mesh).positions);
+		const TriangleMesh result = with_positions(mesh, paper(mesh).positions);
 		const ErrorMeasures before = measure(mesh, cube);
 		const ErrorMeasures after = measure(result, cube);
 		CHECK(before.mean_angle > 7);
@@ -87,7 +81,7 @@ TEST_CASE("The paper's method keeps the edges of a cube sharp", "[paper_method]"
 TEST_CASE("The paper's method turns, moves and grows with the mesh", "[paper_method]")
 {
 	const TriangleMesh mesh = noisy(make_torus(3000), 0.2, NoiseDirection::Random);
-	const std::vector<Point> expected = run(mesh).positions;
+	const std::vector<Point> expected = paper(mesh).positions;
 	const Eigen::Matrix3d rotation = some_rotation();
 	const auto check = [&](double scale, double distance, double tolerance) {
 		INFO("scale " << scale << ", distance " << distance);
@@ -95,7 +89,7 @@ TEST_CASE("The paper's method turns, moves and grows with the mesh", "[paper_met
 			return Point(scale * (rotation * p + Point::Constant(distance)));
 		};
 		const TriangleMesh moved = with_positions(mesh, each(mesh.positions, there));
-		CHECK(largest_distance(run(moved).positions, each(expected, there)) < scale * tolerance);
+		CHECK(largest_distance(paper(moved).positions, each(expected, there)) < scale * tolerance);
 	};
 	check(1, 0, 1e-10);
 	check(1e-6, 0, 1e-10);
@@ -109,8 +103,8 @@ TEST_CASE("A power of two as scale changes no bit", "[paper_method]")
 	for (const double scale : {std::ldexp(1.0, -20), std::ldexp(1.0, 20)}) {
 		const auto scaled = [&](const Point& p) { return Point(scale * p); };
 		CHECK(same_bits(
-			run(with_positions(mesh, each(mesh.positions, scaled))).positions,
-			each(run(mesh).positions, scaled)));
+			paper(with_positions(mesh, each(mesh.positions, scaled))).positions,
+			each(paper(mesh).positions, scaled)));
 	}
 }
 
@@ -123,7 +117,7 @@ TEST_CASE("The paper's method gets through every kind of mesh", "[paper_method]"
 		const TriangleMesh clean = recipe.make(2000);
 		for (const double sigma : {0.0, 0.2}) {
 			const TriangleMesh mesh = sigma > 0 ? noisy(clean, sigma) : clean;
-			const DenoiseResult result = run(mesh);
+			const DenoiseResult result = paper(mesh);
 			CHECK(result.status == DenoiseResult::Status::Done);
 			CHECK(result.iterations_done == 5);
 			REQUIRE(result.positions.size() == mesh.positions.size());
@@ -147,7 +141,7 @@ TEST_CASE("The paper's method leaves fixed vertices alone", "[paper_method]")
 	options.keep_boundary = true;
 	const std::vector<std::uint8_t> boundary = edge_defects(mesh).boundary;
 	REQUIRE(std::count(boundary.begin(), boundary.end(), 1) > 50);
-	const DenoiseResult result = run(mesh, options);
+	const DenoiseResult result = paper(mesh, options);
 	Index moved = 0;
 	bool kept = true;
 	for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -162,7 +156,7 @@ TEST_CASE("The paper's method leaves fixed vertices alone", "[paper_method]")
 
 TEST_CASE("What the paper's method chose is in the result", "[paper_method]")
 {
-	const DenoiseOptions resolved = run(noisy(make_sphere(500), 0.1)).resolved;
+	const DenoiseOptions resolved = paper(noisy(make_sphere(500), 0.1)).resolved;
 	CHECK(resolved.iterations == 5);
 	CHECK(resolved.vertex_iterations == 10);
 	CHECK(resolved.cos_threshold == 0.65);
@@ -172,18 +166,18 @@ TEST_CASE("What the paper's method chose is in the result", "[paper_method]")
 
 	// The same again with what was chosen spelt out.
 	const TriangleMesh mesh = noisy(make_torus(1000), 0.2);
-	const DenoiseResult automatic = run(mesh);
-	CHECK(same_bits(run(mesh, automatic.resolved).positions, automatic.positions));
+	const DenoiseResult automatic = paper(mesh);
+	CHECK(same_bits(paper(mesh, automatic.resolved).positions, automatic.positions));
 
 	DenoiseOptions wide = paper_options();
 	wide.guide_ring = 4;
-	CHECK(run(mesh, wide).resolved.structure_ring == 5);
+	CHECK(paper(mesh, wide).resolved.structure_ring == 5);
 }
 
 TEST_CASE("Every parameter of the paper's method changes the result", "[paper_method]")
 {
 	const TriangleMesh mesh = noisy(make_torus(1500), 0.2, NoiseDirection::Random);
-	const std::vector<Point> expected = run(mesh).positions;
+	const std::vector<Point> expected = paper(mesh).positions;
 	using Change = std::function<void(DenoiseOptions&)>;
 	const std::vector<std::pair<std::string, Change>> changes = {
 		{"iterations", [](DenoiseOptions& o) { o.iterations = 4; }},
@@ -204,7 +198,7 @@ TEST_CASE("Every parameter of the paper's method changes the result", "[paper_me
 		INFO(name);
 		DenoiseOptions options = paper_options();
 		change(options);
-		CHECK(largest_distance(run(mesh, options).positions, expected) > 1e-5);
+		CHECK(largest_distance(paper(mesh, options).positions, expected) > 1e-5);
 	}
 }
 
@@ -215,13 +209,13 @@ TEST_CASE("A threshold that would pass 1 stops below it", "[paper_method]")
 	DenoiseOptions options = paper_options();
 	options.cos_threshold = 1;
 	options.cos_threshold_increment = 1;
-	const std::vector<Point> strict = run(mesh, options).positions;
+	const std::vector<Point> strict = paper(mesh, options).positions;
 	options.cos_threshold = 1 - 1e-6;
 	options.cos_threshold_increment = 0;
-	CHECK(same_bits(run(mesh, options).positions, strict));
+	CHECK(same_bits(paper(mesh, options).positions, strict));
 	options.cos_threshold = 0.9;
 	options.cos_threshold_increment = 0.09;
-	const std::vector<Point> loose = run(mesh, options).positions;
+	const std::vector<Point> loose = paper(mesh, options).positions;
 	CHECK(largest_distance(loose, strict) < 0.1 * largest_distance(loose, mesh.positions));
 }
 
@@ -230,7 +224,7 @@ TEST_CASE("A guide ring wider than the structure ring is refused", "[paper_metho
 	DenoiseOptions options = paper_options();
 	options.guide_ring = 3;
 	options.structure_ring = 2;
-	CHECK_THROWS_AS(run(make_flat_grid(3), options), InvalidParameter);
+	CHECK_THROWS_AS(paper(make_flat_grid(3), options), InvalidParameter);
 }
 
 TEST_CASE("Progress of the paper's method is told in words", "[paper_method]")
@@ -289,9 +283,9 @@ TEST_CASE("The paper's method gives the same on any number of threads", "[paper_
 	const TriangleMesh mesh = noisy(make_part(8000), 0.2, NoiseDirection::Random);
 	DenoiseOptions options = paper_options();
 	options.iterations = 2;
-	const std::vector<Point> expected = run(mesh, options).positions;
+	const std::vector<Point> expected = paper(mesh, options).positions;
 	for (const int threads : {2, 4}) {
 		options.threads = threads;
-		CHECK(same_bits(run(mesh, options).positions, expected));
+		CHECK(same_bits(paper(mesh, options).positions, expected));
 	}
 }

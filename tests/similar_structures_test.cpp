@@ -13,11 +13,6 @@ using namespace orthopoly;
 
 namespace {
 
-std::vector<Index> list(const IndexLists& lists, Index i)
-{
-	return {lists.begin(i), lists.end(i)};
-}
-
 // A strip of triangles along x: face i shares vertices with faces i - 2 to i + 2 only.
 TriangleMesh make_strip(int faces)
 {
@@ -33,10 +28,9 @@ TriangleMesh make_strip(int faces)
 	return mesh;
 }
 
-Point tilted(double degrees)
+Point tilted_to_x(double degrees)
 {
-	const double radians = degrees * std::acos(-1.0) / 180;
-	return Point(std::sin(radians), 0, std::cos(radians));
+	return Point(std::sin(degrees * DEGREE), 0, std::cos(degrees * DEGREE));
 }
 
 } // namespace
@@ -44,13 +38,13 @@ Point tilted(double degrees)
 TEST_CASE("Isotropic structures by hand", "[similar_structures]")
 {
 	const StepFixture f(make_strip(7));
-	std::vector<Point> normals(7, tilted(0));
-	normals[2] = tilted(50);
-	normals[3] = tilted(30);
+	std::vector<Point> normals(7, tilted_to_x(0));
+	normals[2] = tilted_to_x(50);
+	normals[3] = tilted_to_x(30);
 	normals[4] = Point::Zero();
-	std::vector<Point> guides(7, tilted(0));
+	std::vector<Point> guides(7, tilted_to_x(0));
 	guides[4] = Point::Zero();
-	guides[6] = tilted(40);
+	guides[6] = tilted_to_x(40);
 	SimilarStructureOptions options;
 	options.cos_threshold = std::cos(45 * std::acos(-1.0) / 180);
 	const IndexLists found = isotropic_structures(f.workspace, normals, guides, options);
@@ -80,8 +74,8 @@ TEST_CASE("Isotropic structures by hand", "[similar_structures]")
 		options.cos_threshold = 1;
 		const IndexLists none = isotropic_structures(
 			f.workspace,
-			std::vector<Point>(7, tilted(0)),
-			std::vector<Point>(7, tilted(0)),
+			std::vector<Point>(7, tilted_to_x(0)),
+			std::vector<Point>(7, tilted_to_x(0)),
 			options);
 		CHECK(none.values.empty());
 	}
@@ -90,9 +84,15 @@ TEST_CASE("Isotropic structures by hand", "[similar_structures]")
 TEST_CASE("Non-local structures by hand", "[similar_structures]")
 {
 	const StepFixture f(make_strip(7));
-	const std::vector<Point> normals(7, tilted(0));
+	const std::vector<Point> normals(7, tilted_to_x(0));
 	std::vector<Point> guides = {
-		tilted(5), tilted(10), tilted(0), tilted(2), tilted(60), tilted(0), tilted(0)};
+		tilted_to_x(5),
+		tilted_to_x(10),
+		tilted_to_x(0),
+		tilted_to_x(2),
+		tilted_to_x(60),
+		tilted_to_x(0),
+		tilted_to_x(0)};
 	SimilarStructureOptions options;
 	options.cos_threshold = std::cos(45 * std::acos(-1.0) / 180);
 	const IndexLists isotropic = isotropic_structures(f.workspace, normals, guides, options);

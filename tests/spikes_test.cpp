@@ -15,7 +15,7 @@ using namespace orthopoly;
 
 namespace {
 
-constexpr double NOISE = 0.05;
+constexpr double NOISE_BESIDE = 0.05;
 
 TriangleMesh spiky(TriangleMesh mesh, double share, double height = 2)
 {
@@ -30,7 +30,7 @@ TriangleMesh spiky(TriangleMesh mesh, double share, double height = 2)
 
 Spikes spikes_of(const TriangleMesh& mesh, int threads = 1)
 {
-	return find_spikes(StepFixture(mesh, threads).workspace, NOISE);
+	return find_spikes(StepFixture(mesh, threads).workspace, NOISE_BESIDE);
 }
 
 double distance(const Point& a, const Point& b, double edge)
@@ -45,7 +45,7 @@ TEST_CASE("Lone vertices far out are found and put back", "[spikes]")
 	const std::string name = GENERATE("sphere", "torus", "part", "height_field");
 	const double height = GENERATE(1.0, 4.0);
 	CAPTURE(name, height);
-	const TriangleMesh truth = noisy(find_recipe(name).make(12000), NOISE);
+	const TriangleMesh truth = noisy(find_recipe(name).make(12000), NOISE_BESIDE);
 	const TriangleMesh mesh = spiky(truth, 0.01, height);
 	const double edge = mean_edge_length(truth.positions, truth.faces);
 	const Spikes spikes = spikes_of(mesh);
@@ -124,7 +124,7 @@ TEST_CASE("Spikes put back fold no face", "[spikes]")
 
 TEST_CASE("Spikes are the same wherever the mesh is and however it is numbered", "[spikes]")
 {
-	const TriangleMesh mesh = spiky(noisy(make_torus(8000), NOISE), 0.01);
+	const TriangleMesh mesh = spiky(noisy(make_torus(8000), NOISE_BESIDE), 0.01);
 	const double edge = mean_edge_length(mesh.positions, mesh.faces);
 	const Spikes here = spikes_of(mesh);
 	REQUIRE(here.vertices.size() > 20);
@@ -142,7 +142,7 @@ TEST_CASE("Spikes are the same wherever the mesh is and however it is numbered",
 
 TEST_CASE("Spikes are the same on any number of threads", "[spikes][parallel]")
 {
-	const TriangleMesh mesh = spiky(noisy(make_torus(8000), NOISE), 0.01);
+	const TriangleMesh mesh = spiky(noisy(make_torus(8000), NOISE_BESIDE), 0.01);
 	const Spikes one = spikes_of(mesh, 1);
 	for (const int threads : {2, 4}) {
 		const Spikes many = spikes_of(mesh, threads);

@@ -6,10 +6,44 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 namespace orthopoly {
+
+constexpr double PI = 3.14159265358979323846;
+constexpr double DEGREE = PI / 180;
+
+/// The angle between two vectors of any length, in radians.
+inline double angle_between(const Point& a, const Point& b)
+{
+	return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// Mean angle in degrees between the normals and `expected(i)` for the i-th of them.
+template<class Expected>
+double mean_angle(const std::vector<Point>& normals, Expected expected)
+{
+	double sum = 0;
+	for (std::size_t i = 0; i < normals.size(); ++i)
+		sum += angle_between(normals[i], expected(i)) / DEGREE;
+	return sum / static_cast<double>(normals.size());
+}
+
+/// One of the lists, to compare with.
+inline std::vector<Index> list(const IndexLists& lists, Index index)
+{
+	return {lists.begin(index), lists.end(index)};
+}
+
+/// The mesh with other positions.
+inline TriangleMesh with_positions(TriangleMesh mesh, std::vector<Point> positions)
+{
+	mesh.positions = std::move(positions);
+	return mesh;
+}
 
 /// The mesh made larger about the origin, then moved.
 inline TriangleMesh placed(TriangleMesh mesh, double scale, const Point& offset = Point::Zero())

@@ -22,13 +22,6 @@ UnevenNoise found_in(const TriangleMesh& mesh, int threads = 1)
 	return estimate_noise_levels(f.workspace, mesh.positions).uneven;
 }
 
-DenoiseResult run(const TriangleMesh& mesh)
-{
-	DenoiseOptions options;
-	options.threads = 1;
-	return denoised(mesh, options);
-}
-
 double root_mean_square(const std::vector<double>& values)
 {
 	const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
@@ -198,7 +191,7 @@ TEST_CASE("Uneven noise is removed everywhere", "[uneven_noise]")
 	for (const double sigma : {0.1, 0.3}) {
 		CAPTURE(sigma);
 		const TriangleMesh mesh = unevenly_noisy(clean, sigma, ramp);
-		const DenoiseResult result = run(mesh);
+		const DenoiseResult result = denoised(mesh);
 		const ErrorMeasures before = measure(mesh, clean);
 		const ErrorMeasures after = measure(with_positions(mesh, result.positions), clean);
 		CHECK(after.mean_angle < 0.12 * before.mean_angle);
@@ -214,7 +207,7 @@ TEST_CASE("The clean half of a noisy mesh stays clean", "[uneven_noise]")
 {
 	const TriangleMesh clean = make_part(12000);
 	const TriangleMesh mesh = unevenly_noisy(clean, 0.2, half);
-	const std::vector<Point> found = run(mesh).positions;
+	const std::vector<Point> found = denoised(mesh).positions;
 	CHECK(mean_angle_beyond(mesh.positions, clean, 1) > 15);
 	CHECK(mean_angle_beyond(found, clean, 1) < 3);
 	CHECK(mean_angle_beyond(found, clean, -1) < 0.5);
@@ -224,7 +217,7 @@ TEST_CASE("Noise along one axis is removed where it shows", "[uneven_noise]")
 {
 	const TriangleMesh clean = make_cube(12000);
 	const TriangleMesh mesh = noisy_along_z(clean, 0.2);
-	const DenoiseResult result = run(mesh);
+	const DenoiseResult result = denoised(mesh);
 	CHECK(result.estimated_noise == Approx(0.2 / std::sqrt(3)).epsilon(0.15));
 	const ErrorMeasures after = measure(with_positions(mesh, result.positions), clean);
 	CHECK(after.mean_angle < 0.2 * measure(mesh, clean).mean_angle);
@@ -232,7 +225,7 @@ TEST_CASE("Noise along one axis is removed where it shows", "[uneven_noise]")
 
 TEST_CASE("Even noise is told as one level", "[uneven_noise]")
 {
-	const DenoiseResult result = run(noisy(make_torus(4000), 0.2));
+	const DenoiseResult result = denoised(noisy(make_torus(4000), 0.2));
 	CHECK(result.estimated_noise_low == result.estimated_noise);
 	CHECK(result.estimated_noise_high == result.estimated_noise);
 }
@@ -240,19 +233,19 @@ TEST_CASE("Even noise is told as one level", "[uneven_noise]")
 TEST_CASE("Numbering and placing change nothing where noise is uneven", "[uneven_noise]")
 {
 	const TriangleMesh mesh = unevenly_noisy(make_torus(4000), 0.2, ramp);
-	const DenoiseResult here = run(mesh);
+	const DenoiseResult here = denoised(mesh);
 	REQUIRE(here.estimated_noise_low < here.estimated_noise_high);
 	const double size = bounding_box_diagonal(mesh.positions);
 
 	const Renumbered renumbered(mesh);
-	const DenoiseResult other = run(renumbered.mesh);
+	const DenoiseResult other = denoised(renumbered.mesh);
 	CHECK(other.estimated_noise == Approx(here.estimated_noise).epsilon(1e-9));
 	CHECK(
 		largest_distance(renumbered.in_given_order(other.positions), here.positions) < 1e-9 * size);
 
 	const Eigen::Matrix3d rotation = some_rotation();
 	const auto turn = [&](const Point& p) { return Point(1e3 * (rotation * p)); };
-	const DenoiseResult turned = run(with_positions(mesh, each(mesh.positions, turn)));
+	const DenoiseResult turned = denoised(with_positions(mesh, each(mesh.positions, turn)));
 	CHECK(turned.estimated_noise == Approx(here.estimated_noise).epsilon(1e-9));
 	CHECK(largest_distance(turned.positions, each(here.positions, turn)) < 1e3 * 1e-9 * size);
 }

@@ -26,10 +26,16 @@ std::vector<Point> smoothed(const TriangleMesh& mesh, double pairs)
 struct Probed {
 	Probed(const TriangleMesh& mesh, double pairs, double noise = NOISE) :
 			f(mesh), positions(smoothed(mesh, pairs)),
-			detail(f.workspace, noise * f.workspace.mean_edge_length, positions),
-			with_probe(with_positions(mesh, detail.with_probe())),
-			share(detail.share_followed(positions, smoothed(with_probe, pairs)))
+			probe(f.workspace, noise * f.workspace.mean_edge_length, positions),
+			detail(f.workspace, probe, positions),
+			with_probe(with_positions(mesh, probe.with_probe())),
+			share(followed(smoothed(with_probe, pairs)))
 	{
+	}
+
+	double followed(const std::vector<Point>& probed) const
+	{
+		return detail.share_followed(probe.responses(positions, probed));
 	}
 
 	std::vector<Point> given_back() const
@@ -41,6 +47,7 @@ struct Probed {
 
 	StepFixture f;
 	std::vector<Point> positions;
+	Probe probe;
 	BroadDetail detail;
 	TriangleMesh with_probe;
 	double share;
@@ -68,16 +75,16 @@ TEST_CASE("The probe tells what a method follows of noise", "[broad_detail]")
 	CHECK(Probed(mesh, 30).share == Approx(0.73).margin(0.06));
 	CHECK(last < 0.5);
 	const Probed probed(mesh, 20);
-	CHECK(probed.detail.share_followed(probed.positions, probed.positions) == 0);
+	CHECK(probed.followed(probed.positions) == 0);
 	// A method that leaves all as it is follows all there is.
 	const std::vector<Point>& measured = mesh.positions;
 	CHECK(
-		probed.detail.share_followed(measured, probed.with_probe.positions) ==
-		Approx(1).margin(1e-3));
-	// A tenth of the noise each way, along the normals.
+		probed.detail.share_followed(probed.probe.responses(
+			measured, probed.with_probe.positions)) == Approx(1).margin(1e-3));
+	// Half the noise each way, along the normals.
 	for (std::size_t i = 0; i < measured.size(); ++i) {
 		const double distance = (probed.with_probe.positions[i] - measured[i]).norm();
-		REQUIRE(distance == Approx(0.1 * NOISE * probed.f.workspace.mean_edge_length));
+		REQUIRE(distance == Approx(0.5 * NOISE * probed.f.workspace.mean_edge_length));
 	}
 }
 
@@ -110,8 +117,9 @@ TEST_CASE(
 	const StepFixture f(mesh, 2);
 	const double sigma = NOISE * f.workspace.mean_edge_length;
 	std::vector<Point> positions = here.positions;
-	const BroadDetail detail(f.workspace, sigma, positions);
-	CHECK(same_bits(detail.with_probe(), here.with_probe.positions));
+	const Probe probe(f.workspace, sigma, positions);
+	CHECK(same_bits(probe.with_probe(), here.with_probe.positions));
+	const BroadDetail detail(f.workspace, probe, positions);
 	detail.give_back(here.share, positions);
 	CHECK(same_bits(positions, expected));
 	const Renumbered other(mesh);

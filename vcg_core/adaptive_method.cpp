@@ -4,6 +4,7 @@
 #include "broad_detail.h"
 #include "detail.h"
 #include "deviations.h"
+#include "final_smoothing.h"
 #include "height_filter.h"
 #include "interpolation.h"
 #include "mesh_part.h"
@@ -12,6 +13,7 @@
 #include "normal_filter.h"
 #include "outliers.h"
 #include "prefilter.h"
+#include "probe.h"
 #include "sampling.h"
 #include "spikes.h"
 #include "unfolding.h"
@@ -647,10 +649,10 @@ std::optional<Run> run_at(
 	return Run {taken, method.sigma()};
 }
 
-// Gives back what broad detail a run took along with noise that is white and the same everywhere. A
-// mesh of many faces is tried out in places first, and what the method follows of noise there is
-// taken for that of all of it.
-void give_back_broad_detail(
+// Gives back what broad detail a run took along with noise that is white and the same everywhere,
+// and smooths what it left rough. A mesh of many faces is tried out in places first, and what the
+// method follows of noise there is taken for that of all of it.
+void finish(
 	double level,
 	double sigma,
 	const Workspace& workspace,
@@ -665,24 +667,34 @@ void give_back_broad_detail(
 		AdaptiveMethod(its_workspace, plan, {}, result).run();
 		return result;
 	};
-	const auto denoised_with_probe = [&](TriangleMesh mesh, const BroadDetail& detail) {
-		mesh.positions = detail.with_probe();
-		return denoised(Workspace(mesh, workspace.execution));
+	const auto responses_to = [&](const Probe& probe, TriangleMesh mesh, const auto& plain) {
+		mesh.positions = probe.with_probe();
+		return probe.responses(plain, denoised(Workspace(mesh, workspace.execution)));
 	};
 	if (workspace.mesh.face_count() <= MOST_PROBED) {
-		const BroadDetail detail(workspace, sigma, positions);
-		const std::vector<Point> probed = denoised_with_probe(workspace.mesh, detail);
-		detail.give_back(detail.share_followed(positions, probed), positions);
+		const Probe probe(workspace, sigma, positions);
+		const std::vector<Point> responses = responses_to(probe, workspace.mesh, positions);
+		const BroadDetail detail(workspace, probe, positions);
+		detail.give_back(detail.share_followed(responses), positions);
+		const FinalSmoothing smoothing = choose_smoothing(workspace, probe, responses, positions);
+		smooth_finally(workspace, smoothing, positions);
 		return;
 	}
 	const MeshPart part = cut_out_places(workspace);
 	const Workspace part_workspace(part.mesh, workspace.execution);
-	const std::vector<Point> plain = denoised(part_workspace);
-	const BroadDetail detail(part_workspace, sigma, plain);
-	const std::vector<Point> probed = denoised_with_probe(part.mesh, detail);
-	const double followed = detail.share_followed(plain, probed, part.inner);
-	if (detail.certainty(followed, part.inner) > 0)
-		BroadDetail(workspace, sigma, positions).give_back(followed, positions);
+	std::vector<Point> part_positions = denoised(part_workspace);
+	const Probe probe(part_workspace, sigma, part_positions);
+	const std::vector<Point> responses = responses_to(probe, part.mesh, part_positions);
+	const BroadDetail detail(part_workspace, probe, part_positions);
+	const double followed = detail.share_followed(responses, part.inner);
+	if (detail.certainty(followed, part.inner) > 0) {
+		detail.give_back(followed, part_positions);
+		const Probe whole(workspace, sigma, positions);
+		BroadDetail(workspace, whole, positions).give_back(followed, positions);
+	}
+	const FinalSmoothing smoothing =
+		choose_smoothing(part_workspace, probe, responses, part_positions, part.inner);
+	smooth_finally(workspace, smoothing, positions);
 }
 
 // What noise a mesh has.
@@ -742,7 +754,7 @@ void lower_and_run(
 	if (!last)
 		positions = workspace.mesh.positions;
 	else if (noise.uneven.factors.empty())
-		give_back_broad_detail(strength * level, last->sigma, workspace, options, positions);
+		finish(strength * level, last->sigma, workspace, options, positions);
 }
 
 // The same with the outliers put back first, and the other vertices in the end.

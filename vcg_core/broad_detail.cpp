@@ -3,10 +3,7 @@
 
 #include "interpolation.h"
 #include "local_heights.h"
-#include "prefilter.h"
-#include "sampling.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -17,10 +14,6 @@ namespace {
 // Pairs of the filter, which keep a ninth of the noise. Five keep a third of it, and of the detail
 // not more by as much; 40 less of the detail.
 constexpr int PAIRS = 30;
-
-// Deviations of the noise that the probe moves vertices by: as little as leaves the method's
-// choices as they are, mostly, and far above rounding.
-constexpr double PROBE = 0.1;
 
 // A response beyond so many times the probe is another choice of the method's, which says nothing.
 constexpr double LARGEST_RESPONSE = 2;
@@ -40,46 +33,17 @@ constexpr double GAIN_OF_NOISE = 0.25;
 constexpr double GAIN_OF_DETAIL = 0.45;
 constexpr double CHANCE = 20;
 
-// The filter (see taubin_smooth) of values at the vertices.
-void keep_broad(const Workspace& workspace, std::vector<Eigen::Array2d>& values)
-{
-	for (int pair = 0; pair < PAIRS; ++pair) {
-		for (const double step : {TAUBIN_SHRINK, TAUBIN_INFLATE}) {
-			std::vector<Eigen::Array2d> means = values;
-			average(workspace, 1, means);
-			// Of the mean's three thirds the vertex itself is one.
-			workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-				values[i] += 1.5 * step * (means[i] - values[i]);
-			});
-		}
-	}
-}
-
 } // namespace
 
 BroadDetail::BroadDetail(
-	const Workspace& workspace, double sigma, const std::vector<Point>& positions) :
+	const Workspace& workspace, const Probe& probe, const std::vector<Point>& positions) :
 		workspace_(workspace),
-		sigma_(sigma), moves_(moves_beside_edges(workspace, sigma, positions)),
-		signs_(signs_by_value(areas_around(workspace, workspace.mesh.positions))),
-		kept_(positions.size(), Eigen::Array2d::Zero())
+		probe_(probe), moves_(moves_beside_edges(workspace, probe.sigma(), positions)),
+		kept_(positions.size())
 {
-	for (std::size_t i = 0; i < signs_.size(); ++i) {
-		if (moves_.crosses[i].isZero(0) || workspace.mesh.is_fixed(static_cast<Index>(i)))
-			signs_[i] = 0;
-		kept_[i] = {moves_.lengths[i], signs_[i]};
-	}
-	keep_broad(workspace, kept_);
-}
-
-std::vector<Point> BroadDetail::with_probe() const
-{
-	std::vector<Point> positions = workspace_.mesh.positions;
-	for (std::size_t i = 0; i < positions.size(); ++i) {
-		if (signs_[i] != 0)
-			positions[i] += PROBE * sigma_ * signs_[i] * moves_.crosses[i].normalized();
-	}
-	return positions;
+	for (std::size_t i = 0; i < kept_.size(); ++i)
+		kept_[i] = {moves_.lengths[i], probe.signs()[i]};
+	low_pass(workspace, PAIRS, kept_);
 }
 
 template<class Value>
@@ -93,17 +57,14 @@ double BroadDetail::sum(const std::vector<std::uint8_t>& inner, const Value& val
 }
 
 double BroadDetail::share_followed(
-	const std::vector<Point>& positions,
-	const std::vector<Point>& probed,
-	const std::vector<std::uint8_t>& inner) const
+	const std::vector<Point>& responses, const std::vector<std::uint8_t>& inner) const
 {
 	const double kept = sum(inner, [&](std::size_t i) { return products(i)[1]; });
 	const double followed = sum(inner, [&](std::size_t i) {
-		if (!is_probed(i))
-			return 0.0;
-		const Point normal = moves_.crosses[i].normalized();
-		const double response = (probed[i] - positions[i]).dot(normal) / (PROBE * sigma_);
-		return kept_[i][1] * std::max(-LARGEST_RESPONSE, std::min(LARGEST_RESPONSE, response));
+		const double response = responses[i].dot(probe_.normals()[i]);
+		return is_probed(i) ?
+				   kept_[i][1] * std::max(-LARGEST_RESPONSE, std::min(LARGEST_RESPONSE, response)) :
+				   0.0;
 	});
 	return kept > 0 ? std::max(0.0, std::min(1.0, followed / kept)) : 0;
 }
@@ -111,7 +72,7 @@ double BroadDetail::share_followed(
 BroadDetail::Products BroadDetail::products(std::size_t vertex) const
 {
 	const double kept = kept_[vertex][0];
-	const double noise = is_probed(vertex) ? signs_[vertex] * kept_[vertex][1] : 0;
+	const double noise = is_probed(vertex) ? probe_.signs()[vertex] * kept_[vertex][1] : 0;
 	return {moves_.lengths[vertex] * kept, noise, kept * kept};
 }
 
@@ -155,7 +116,7 @@ void BroadDetail::give_back(double share_followed, std::vector<Point>& positions
 			return;
 		const double gain = gain_for(means[i] + WEIGHT_OF_ALL * all.products, share_followed);
 		positions[i] += certainty * std::max(0.0, std::min(LARGEST_GAIN, gain)) * kept_[i][0] *
-						sigma_ * moves_.crosses[i].normalized();
+						probe_.sigma() * probe_.normals()[i];
 	});
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "moves.h"
+#include "probe.h"
 #include "workspace.h"
 
 #include <Eigen/Core>
@@ -16,28 +17,21 @@ namespace orthopoly {
 /// What it keeps is added (Tukey's twicing) by the gain that leaves the least square error: one
 /// less the share of it that is noise (Stein 1981). How much noise there is in what was taken
 /// depends on how far the method follows noise itself, which it does the more the more detail it
-/// keeps. So that is measured by a probe: the method is run again with a little noise more, whose
-/// signs are known, and how far the result goes along with these is the trace of its response
-/// (Ramani, Blu, Unser 2008).
+/// keeps, and which a probe tells.
 class BroadDetail {
 public:
 	/// @param workspace its mesh as measured; has to outlive this
-	/// @param sigma     the noise that was taken, in the caller's length unit; > 0
+	/// @param probe     of that mesh; has to outlive this
 	/// @param positions #V denoised
-	BroadDetail(const Workspace& workspace, double sigma, const std::vector<Point>& positions);
-
-	/// #V as measured, with the probe.
-	std::vector<Point> with_probe() const;
+	BroadDetail(
+		const Workspace& workspace, const Probe& probe, const std::vector<Point>& positions);
 
 	/// The share of the noise in the filter's band that the method follows, 0 to 1.
 	///
-	/// @param positions #V denoised, as given before
-	/// @param probed    #V the same method's result for `with_probe`
+	/// @param responses #V of the method to the probe
 	/// @param inner     #V flags of the vertices to look at, or empty for all
 	double share_followed(
-		const std::vector<Point>& positions,
-		const std::vector<Point>& probed,
-		const std::vector<std::uint8_t>& inner = {}) const;
+		const std::vector<Point>& responses, const std::vector<std::uint8_t>& inner = {}) const;
 
 	/// How certain it is that detail was taken at those vertices where the method follows that
 	/// share of the noise, 0 to 1.
@@ -51,7 +45,7 @@ private:
 	/// Where the probe says something: edges take no part.
 	bool is_probed(std::size_t vertex) const
 	{
-		return signs_[vertex] != 0 && moves_.lengths[vertex] != 0;
+		return probe_.signs()[vertex] != 0 && moves_.lengths[vertex] != 0;
 	}
 	/// Of the values of those vertices that have faces.
 	template<class Value>
@@ -72,10 +66,8 @@ private:
 	static double gain_for(const Products& products, double share_followed);
 
 	const Workspace& workspace_;
-	double sigma_;
+	const Probe& probe_;
 	Moves moves_;
-	/// #V signs of the probe, zero where it has none.
-	std::vector<double> signs_;
 	/// #V moves and signs that the filter keeps.
 	std::vector<Eigen::Array2d> kept_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "deviations.h"
+#include "prefilter.h"
 #include "workspace.h"
 
 #include <vector>
@@ -51,6 +52,26 @@ void average(const Workspace& workspace, int times, std::vector<Value>& values)
 				sum += sums[at(*face)];
 			values[i] = sum / (3.0 * static_cast<double>(end - first));
 		});
+	}
+}
+
+/// Keeps what is broad of #V values: so many pairs of Taubin's filter (see prefilter.h).
+template<class Value>
+void low_pass(
+	const Workspace& workspace,
+	int pairs,
+	std::vector<Value>& values,
+	double inflate = TAUBIN_INFLATE)
+{
+	for (int pair = 0; pair < pairs; ++pair) {
+		for (const double step : {TAUBIN_SHRINK, inflate}) {
+			std::vector<Value> means = values;
+			average(workspace, 1, means);
+			// Of the mean's three thirds the vertex itself is one.
+			workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+				values[i] += 1.5 * step * (means[i] - values[i]);
+			});
+		}
 	}
 }
 

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "final_smoothing.h"
+
+#include "measures.h"
+#include "method_support.h"
+#include "moves.h"
+#include "recipes.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+using namespace orthopoly;
+
+namespace {
+
+constexpr double SIGMA = 0.2;
+
+/// A method that goes so far of the way from the measured mesh to what it should be, so that it
+/// follows the rest of the noise.
+struct Halfway {
+	Halfway(const TriangleMesh& truth_given, double way, int threads = 1) :
+			truth(truth_given), f(noisy(truth, SIGMA), threads), positions(f.mesh.positions),
+			probe(
+				f.workspace,
+				SIGMA * mean_edge_length(truth.positions, truth.faces),
+				truth.positions),
+			responses(probe.normals())
+	{
+		for (std::size_t i = 0; i < positions.size(); ++i) {
+			positions[i] += way * (truth.positions[i] - positions[i]);
+			responses[i] *= (1 - way) * probe.signs()[i];
+		}
+	}
+
+	FinalSmoothing choice() const
+	{
+		return choose_smoothing(f.workspace, probe, responses, positions);
+	}
+
+	std::vector<Point> smoothed() const
+	{
+		std::vector<Point> result = positions;
+		smooth_finally(f.workspace, choice(), result);
+		return result;
+	}
+
+	ErrorMeasures errors(const std::vector<Point>& its_positions) const
+	{
+		return measure(with_positions(truth, its_positions), truth);
+	}
+
+	TriangleMesh truth;
+	StepFixture f;
+	std::vector<Point> positions;
+	Probe probe;
+	std::vector<Point> responses;
+};
+
+/// The share that leaves the least, by the mesh as it should be.
+double best_share(const Halfway& method, int pairs)
+{
+	std::vector<Point> away = method.positions;
+	low_pass(method.f.workspace, pairs, away);
+	double products = 0;
+	double squares = 0;
+	for (const Face& face : method.truth.faces) {
+		const auto along_normal = [&](std::size_t k, const std::vector<Point>& to) {
+			const std::size_t i = at(face[k % 3]);
+			return (to[i] - method.positions[i]).dot(method.probe.normals()[i]);
+		};
+		for (std::size_t k = 0; k < 3; ++k) {
+			const double smoothing = along_normal(k, away) - along_normal(k + 1, away);
+			const double error = along_normal(k, method.truth.positions) -
+								 along_normal(k + 1, method.truth.positions);
+			products += smoothing * error;
+			squares += smoothing * smoothing;
+		}
+	}
+	return products / squares;
+}
+
+} // namespace
+
+TEST_CASE("What a method left rough is smoothed in the end", "[final_smoothing]")
+{
+	for (const double way : {0.2, 0.5, 0.8}) {
+		CAPTURE(way);
+		const Halfway method(make_sphere(8000), way);
+		CHECK(method.choice().share > 0.9);
+		const ErrorMeasures before = method.errors(method.positions);
+		const ErrorMeasures after = method.errors(method.smoothed());
+		CHECK(after.mean_angle < 0.5 * before.mean_angle);
+		CHECK(after.vertex_error < 0.8 * before.vertex_error);
+	}
+}
+
+TEST_CASE("The share of the final smoothing is that which leaves the least", "[final_smoothing]")
+{
+	// Bumps that the filter takes some of.
+	for (const double height : {1.0, 1.5, 2.0}) {
+		CAPTURE(height);
+		const Halfway method(bumpy_sphere(12000, 6, height), 0.5);
+		const FinalSmoothing choice = method.choice();
+		REQUIRE(choice.share > 0.05);
+		const double best = std::min(1.0, best_share(method, choice.pairs));
+		CHECK(choice.share == Approx(best).margin(0.15));
+		CHECK(
+			method.errors(method.smoothed()).mean_angle <
+			method.errors(method.positions).mean_angle);
+	}
+}
+
+TEST_CASE("Edges that a method found are not smoothed", "[final_smoothing]")
+{
+	for (const char* name : {"cube", "part"}) {
+		CAPTURE(name);
+		const Halfway method(find_recipe(name).make(12000), 1);
+		CHECK(method.choice().share == 0);
+		CHECK(same_bits(method.smoothed(), method.positions));
+	}
+}
+
+TEST_CASE(
+	"The final smoothing does not depend on threads and numbers, nor moves what is fixed",
+	"[final_smoothing]")
+{
+	const TriangleMesh truth = bumpy_sphere(6000, 6, 0.5);
+	const Halfway here(truth, 0.5);
+	const std::vector<Point> expected = here.smoothed();
+	CHECK_FALSE(same_bits(expected, here.positions));
+	CHECK(same_bits(Halfway(truth, 0.5, 2).smoothed(), expected));
+
+	TriangleMesh fixed = here.f.mesh;
+	fixed.fixed.assign(fixed.positions.size(), 0);
+	for (std::size_t i = 0; i < fixed.fixed.size(); i += 3)
+		fixed.fixed[i] = 1;
+	const StepFixture f(fixed);
+	const Probe probe(f.workspace, SIGMA * f.workspace.mean_edge_length, here.positions);
+	std::vector<Point> positions = here.positions;
+	smooth_finally(f.workspace, here.choice(), positions);
+	for (std::size_t i = 0; i < fixed.fixed.size(); i += 3) {
+		REQUIRE(probe.signs()[i] == 0);
+		REQUIRE(positions[i] == here.positions[i]);
+	}
+
+	const Renumbered other(here.f.mesh);
+	const StepFixture g(other.mesh);
+	const auto there = [&](const auto& values) {
+		auto result = values;
+		for (std::size_t i = 0; i < values.size(); ++i)
+			result[other.places[i]] = values[i];
+		return result;
+	};
+	std::vector<Point> renumbered = there(here.positions);
+	const Probe its_probe(g.workspace, here.probe.sigma(), there(truth.positions));
+	const FinalSmoothing choice =
+		choose_smoothing(g.workspace, its_probe, there(here.responses), renumbered);
+	CHECK(choice.pairs == here.choice().pairs);
+	CHECK(choice.share == Approx(here.choice().share).epsilon(1e-9));
+	smooth_finally(g.workspace, choice, renumbered);
+	CHECK(
+		largest_distance(other.in_given_order(renumbered), expected) <
+		1e-9 * f.workspace.mean_edge_length);
+}

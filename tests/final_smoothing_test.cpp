@@ -60,7 +60,7 @@ struct Halfway {
 double best_share(const Halfway& method, int pairs)
 {
 	std::vector<Point> away = method.positions;
-	low_pass(method.f.workspace, pairs, away);
+	low_pass(method.f.workspace, pairs, away, -TAUBIN_SHRINK);
 	double products = 0;
 	double squares = 0;
 	for (const Face& face : method.truth.faces) {

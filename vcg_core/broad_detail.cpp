@@ -15,9 +15,6 @@ namespace {
 // not more by as much; 40 less of the detail.
 constexpr int PAIRS = 30;
 
-// A response beyond so many times the probe is another choice of the method's, which says nothing.
-constexpr double LARGEST_RESPONSE = 2;
-
 // Averages that gains are reckoned over: some two hundred vertices. These alone tell them to within
 // 0.3, too little, so that those of all count with the weight of so many such surroundings.
 constexpr int AVERAGES = 40;
@@ -61,10 +58,7 @@ double BroadDetail::share_followed(
 {
 	const double kept = sum(inner, [&](std::size_t i) { return products(i)[1]; });
 	const double followed = sum(inner, [&](std::size_t i) {
-		const double response = responses[i].dot(probe_.normals()[i]);
-		return is_probed(i) ?
-				   kept_[i][1] * std::max(-LARGEST_RESPONSE, std::min(LARGEST_RESPONSE, response)) :
-				   0.0;
+		return is_probed(i) ? kept_[i][1] * probe_.bounded_response(responses, i) : 0.0;
 	});
 	return kept > 0 ? std::max(0.0, std::min(1.0, followed / kept)) : 0;
 }

@@ -2,10 +2,8 @@
 #include "final_smoothing.h"
 
 #include "interpolation.h"
-#include "local_heights.h"
 #include "moves.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -24,9 +22,6 @@ constexpr double WIDE_SHARE = 2;
 // by more than it gains elsewhere, where all are flat.
 constexpr double SHARE_OF_EDGES = 0.3;
 constexpr double SHARE_OF_DETAIL = 0.5;
-
-// A response beyond so many times the probe is another choice of the method's.
-constexpr double LARGEST_RESPONSE = 2;
 
 // The estimate's terms go together over some edges, so that their sum is by so much less certain
 // than that of as many terms of no relation: 1.5 to 2 measured by summing over blocks.
@@ -79,8 +74,7 @@ double variance_of(
 	// Of the probe, if the method is a filter, or if what it follows are choices.
 	const double filtered = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
 		const auto left = [&](std::size_t i) {
-			const double response = responses[i].dot(probe.normals()[i]);
-			return signs[i] - std::max(-LARGEST_RESPONSE, std::min(LARGEST_RESPONSE, response));
+			return signs[i] - probe.bounded_response(responses, i);
 		};
 		const double difference = left(a) - left(b);
 		return difference * difference;
@@ -153,12 +147,7 @@ void smooth_finally(
 	if (!(smoothing.share > 0))
 		return;
 	const std::vector<Point> away = smoothed_away(workspace, smoothing.pairs, positions);
-	std::vector<Point> normals(positions.size());
-	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		normals[i] = cross_product_around(workspace, positions, static_cast<Index>(i));
-		const double length = normals[i].norm();
-		normals[i] = length > 0 ? Point(normals[i] / length) : Point::Zero();
-	});
+	const std::vector<Point> normals = vertex_normals(workspace, positions);
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
 		if (!workspace.mesh.is_fixed(static_cast<Index>(i)))
 			positions[i] += smoothing.share * away[i].dot(normals[i]) * normals[i];

@@ -4,6 +4,8 @@
 #include "local_heights.h"
 #include "sampling.h"
 
+#include <algorithm>
+
 namespace orthopoly {
 
 namespace {
@@ -12,21 +14,19 @@ namespace {
 // jump, average out (with a tenth they scatter five times as much), and hardly more noise than is.
 constexpr double PROBE = 0.5;
 
+// A response beyond so many times the probe is another choice of the method's, which says nothing.
+constexpr double LARGEST_RESPONSE = 2;
+
 } // namespace
 
 Probe::Probe(const Workspace& workspace, double sigma, const std::vector<Point>& positions) :
-		workspace_(workspace), sigma_(sigma), normals_(positions.size(), Point::Zero()),
+		workspace_(workspace), sigma_(sigma), normals_(vertex_normals(workspace, positions)),
 		signs_(signs_by_value(areas_around(workspace, workspace.mesh.positions)))
 {
-	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		const auto vertex = static_cast<Index>(i);
-		const Point cross = cross_product_around(workspace, positions, vertex);
-		const double length = cross.norm();
-		if (length > 0)
-			normals_[i] = cross / length;
-		if (!(length > 0) || workspace.mesh.is_fixed(vertex))
+	for (std::size_t i = 0; i < signs_.size(); ++i) {
+		if (normals_[i].isZero(0) || workspace.mesh.is_fixed(static_cast<Index>(i)))
 			signs_[i] = 0;
-	});
+	}
 }
 
 std::vector<Point> Probe::with_probe() const
@@ -47,6 +47,12 @@ Probe::responses(const std::vector<Point>& positions, const std::vector<Point>& 
 		responses[i] = (probed[i] - positions[i]) / (PROBE * sigma_);
 	});
 	return responses;
+}
+
+double Probe::bounded_response(const std::vector<Point>& responses, std::size_t vertex) const
+{
+	const double response = responses[vertex].dot(normals_[vertex]);
+	return std::max(-LARGEST_RESPONSE, std::min(LARGEST_RESPONSE, response));
 }
 
 } // namespace orthopoly

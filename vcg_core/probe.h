@@ -36,6 +36,9 @@ public:
 	std::vector<Point>
 	responses(const std::vector<Point>& positions, const std::vector<Point>& probed) const;
 
+	/// That of one vertex along its normal, no more than what a filter's may be.
+	double bounded_response(const std::vector<Point>& responses, std::size_t vertex) const;
+
 private:
 	const Workspace& workspace_;
 	double sigma_;

@@ -33,6 +33,16 @@ cross_products_around(const Workspace& workspace, const std::vector<Point>& posi
 	return sums;
 }
 
+std::vector<Point> vertex_normals(const Workspace& workspace, const std::vector<Point>& positions)
+{
+	std::vector<Point> normals = cross_products_around(workspace, positions);
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		const double length = normals[i].norm();
+		normals[i] = length > 0 ? Point(normals[i] / length) : Point::Zero();
+	});
+	return normals;
+}
+
 double mean_edge_square_around(
 	const Workspace& workspace, const std::vector<Point>& positions, Index vertex)
 {

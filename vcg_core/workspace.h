@@ -42,6 +42,9 @@ Point cross_product_around(
 std::vector<Point>
 cross_products_around(const Workspace& workspace, const std::vector<Point>& positions);
 
+/// #V unit normals, weighted by area; zero where there is none.
+std::vector<Point> vertex_normals(const Workspace& workspace, const std::vector<Point>& positions);
+
 /// Sum of the ways from a vertex to the corners of the faces around it: a neighbour counts once for
 /// each face shared.
 inline Point

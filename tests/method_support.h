@@ -112,4 +112,13 @@ with_correlated_noise(const TriangleMesh& truth, double sigma, int smoothing_ste
 	return mesh;
 }
 
+/// Detail from a few edges to many all over a surface, the wider the higher, as the roughness of
+/// scanned things is.
+inline TriangleMesh with_relief(const TriangleMesh& truth)
+{
+	TriangleMesh mesh = with_correlated_noise(truth, 0.1, 2);
+	mesh = with_correlated_noise(mesh, 0.2, 8);
+	return with_correlated_noise(mesh, 0.4, 32);
+}
+
 } // namespace orthopoly

@@ -40,6 +40,7 @@ TEST_CASE("White noise is not taken for correlated, on any surface", "[noise_cor
 			CAPTURE(name, static_cast<int>(direction), sigma);
 			const TriangleMesh mesh = noisy(find_recipe(name).make(4000), sigma, direction);
 			CHECK(measured(mesh).certainty() == 0);
+			CHECK(measured(mesh).certainty_by_rise() == 0);
 		}
 	}
 	for (const double sigma : {0.05, 0.2, 0.6}) {
@@ -114,7 +115,7 @@ TEST_CASE(
 	"What is measured in any case is the same where it is told by itself", "[noise_correlation]")
 {
 	const TriangleMesh ball = ball_of_volume(0.7, 40, 0.3);
-	const TriangleMesh sphere = with_correlated_noise(find_recipe("sphere").make(4000), 0.4);
+	const TriangleMesh sphere = noisy(find_recipe("sphere").make(4000), 0.4);
 	const auto narrow_level = [](const TriangleMesh& mesh, bool in_any_case) {
 		const StepFixture f(mesh);
 		return measure_noise_correlation(f.workspace, mesh.positions, in_any_case).narrow_level;
@@ -173,6 +174,31 @@ TEST_CASE("Rough ground is not taken for noise", "[noise_correlation]")
 	for (const double sigma : {0.02, 0.05, 0.1}) {
 		CAPTURE(sigma);
 		CHECK(measured(noisy(mesh, sigma)).certainty() < 0.1);
+		CHECK(measured(noisy(mesh, sigma)).certainty_by_rise() == 0);
+	}
+	const TriangleMesh rough = with_relief(make_sphere(20000));
+	const NoiseCorrelation found = measured(rough);
+	CAPTURE(found.first_rise, found.further_rise, found.middle_level);
+	CHECK(found.first_rise > 0.7);
+	CHECK(found.middle_level > 0.045);
+	CHECK(found.certainty_by_rise() == 0);
+	CHECK(measured(noisy(rough, 0.1)).certainty_by_rise() == 0);
+}
+
+TEST_CASE("Noise that was smoothed rises with the rings, and then no more", "[noise_correlation]")
+{
+	for (const std::string name : {"cube", "sphere", "torus", "part"}) {
+		for (const double sigma : {0.08, 0.15}) {
+			CAPTURE(name, sigma);
+			const TriangleMesh clean = find_recipe(name).make(40000);
+			const NoiseCorrelation found = measured(with_correlated_noise(clean, sigma, 1));
+			CAPTURE(found.first_rise, found.further_rise, found.middle_level);
+			CHECK(found.first_rise > 0.65);
+			CHECK(found.further_rise < 0.7);
+			CHECK(found.middle_level == Approx(sigma).epsilon(0.25));
+			CHECK(found.certainty_by_rise() > 0.8);
+			CHECK(measured(clean).certainty_by_rise() == 0);
+		}
 	}
 }
 
@@ -187,6 +213,8 @@ TEST_CASE("Size, place, turn and order do not matter to the kind of noise", "[no
 		CHECK(found.unevenness == Approx(here.unevenness).epsilon(1e-9));
 		CHECK(found.level == Approx(here.level).epsilon(1e-9));
 		CHECK(found.certainty() == Approx(here.certainty()).epsilon(1e-6));
+		CHECK(found.first_rise == Approx(here.first_rise).epsilon(1e-7));
+		CHECK(found.further_rise == Approx(here.further_rise).epsilon(1e-7));
 	};
 	for (const double scale : {1e-3, 1e3}) {
 		const Eigen::Matrix3d rotation = some_rotation();
@@ -204,6 +232,7 @@ TEST_CASE("Coarse boxes are no volumes", "[noise_correlation]")
 			CAPTURE(name, faces);
 			const TriangleMesh clean = find_recipe(name).make(faces);
 			CHECK(measured(clean).certainty() == 0);
+			CHECK(measured(clean).certainty_by_rise() == 0);
 			CHECK(measured(noisy(clean, 0.1)).certainty() == 0);
 		}
 	}
@@ -226,5 +255,7 @@ TEST_CASE("The kind of noise is the same on any number of threads", "[noise_corr
 		CHECK(many.edge_correlation == one.edge_correlation);
 		CHECK(many.growth == one.growth);
 		CHECK(many.certainty() == one.certainty());
+		CHECK(many.first_rise == one.first_rise);
+		CHECK(many.further_rise == one.further_rise);
 	}
 }

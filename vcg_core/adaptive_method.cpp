@@ -795,7 +795,8 @@ Noise estimate_noise(const Workspace& workspace, const DenoiseOptions& options)
 	workspace.execution.begin_phase(0.05, 0.08, "estimating the noise");
 	const NoiseLevels levels = estimate_noise_levels(workspace, workspace.mesh.positions);
 	Noise noise;
-	double rough = levels.rough;
+	double by_rise = 0;
+	double narrow_level = 0;
 	if (options.noise_type != NoiseType::White) {
 		const bool scanner = options.noise_type == NoiseType::Scanner;
 		const NoiseCorrelation measured =
@@ -803,8 +804,9 @@ Noise estimate_noise(const Workspace& workspace, const DenoiseOptions& options)
 		noise.correlation = {scanner ? 1 : measured.certainty(), measured.reach()};
 		if (levels.rounding > 0 && !scanner)
 			noise.correlation.share = way_between(FINE_ROUNDING, COARSE_ROUNDING, levels.rounding);
-		// What a polynomial over two rings follows of such noise, one over more does not.
-		rough = std::max(rough, measured.narrow_level);
+		else
+			by_rise = (1 - levels.uneven.certainty) * measured.certainty_by_rise();
+		narrow_level = measured.narrow_level;
 	}
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
 	if (noise.correlation.share == 0)
@@ -813,8 +815,15 @@ Noise estimate_noise(const Workspace& workspace, const DenoiseOptions& options)
 	// correlated.
 	if (noise.correlation.share < 0.5 && noise.uneven.certainty < 0.5)
 		noise.outliers = repair_outliers(workspace, levels);
-	if (noise.outliers.share > 0)
+	noise.correlation.share =
+		std::max(noise.correlation.share, (1 - noise.outliers.share) * by_rise);
+	if (noise.correlation.share >= 0.5)
+		noise.outliers = {};
+	if (noise.correlation.share > 0 || noise.outliers.share > 0)
 		noise.uneven = {};
+	// What a polynomial over two rings follows of such noise, one over more does not.
+	const double rough =
+		noise.correlation.share > 0 ? std::max(levels.rough, narrow_level) : levels.rough;
 	// Noise that goes together over several edges grows with the rings as detail does.
 	const double white = noise.outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;
 	const double even = between(white, rough, noise.correlation.share);

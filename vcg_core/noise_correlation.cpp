@@ -68,9 +68,24 @@ constexpr Ramp STRONG = {0.10, 0.25};
 constexpr Ramp STRONG_IN_VOXELS = {0.025, 0.045};
 constexpr Ramp NOT_TOO_STRONG = {0.55, 0.48};
 
-// Rings of vertices of the narrow, the middle and the wide polynomials, and of those whose
-// residuals are correlated: wide enough to leave what is correlated over several edges in the
+// Where nothing shows where a mesh comes from. The power of the rings that residuals rise by from
+// two rings to four: 0.2 to 0.45 of white noise on smooth surfaces and up to 0.8 on fine detail,
+// 0.65 to 1.2 of noise that was smoothed, remeshed or decimated, more of clean meshes. From four to
+// eight: 0.1 to 0.7 of white noise, 0.3 to 0.8 of smoothed one, 0.9 and far more of clean meshes.
+// The second is less than the first by 0.3 to 0.8 where noise was smoothed, by 0.25 at most where
+// it is white.
+constexpr Ramp RISES = {0.60, 0.75};
+constexpr Ramp NO_FURTHER = {0.85, 0.70};
+constexpr Ramp BENDS = {0.25, 0.40};
+
+// Noise of 0.25 leaves 0.15 once it was smoothed, noise of half an edge less than 0.3. More is
+// features of a coarse mesh, a few edges wide, beyond which residuals do not rise either.
+constexpr Ramp BELOW_FEATURES = {0.32, 0.24};
+
+// Rings of vertices of the narrowest, the narrow, the middle and the wide polynomials, and of those
+// whose residuals are correlated: wide enough to leave what is correlated over several edges in the
 // residual.
+constexpr int NARROWEST_RINGS = 2;
 constexpr int NARROW_RINGS = 4;
 constexpr int CORRELATED_RINGS = 5;
 constexpr int MIDDLE_RINGS = 6;
@@ -78,6 +93,9 @@ constexpr int WIDE_RINGS = 8;
 
 // The share of places that counts as the flattest.
 constexpr double FLATTEST = 0.2;
+
+// The same where polynomials that see more of the surface tell noise from it.
+constexpr double VERY_FLATTEST = 0.1;
 
 // So many polynomials reach every place of an ordinary mesh several times.
 constexpr Index SAMPLES = 1500;
@@ -89,6 +107,7 @@ constexpr Index GRAIN = 32;
 
 /// What is measured around a vertex; negative variances where there is no polynomial.
 struct Residuals {
+	double narrowest = -1;
 	double narrow = -1;
 	double correlated = -1;
 	double middle = -1;
@@ -99,6 +118,36 @@ struct Residuals {
 double deviation(LocalHeights& heights, Index vertex, int rings)
 {
 	return heights.fit(vertex, rings) ? std::sqrt(heights.variance()) : -1;
+}
+
+// The residual deviation at a share of the places that have a polynomial, those in order; zero
+// without any.
+double at_share(const std::vector<Residuals>& found, double Residuals::*deviation, double share)
+{
+	std::vector<double> values;
+	values.reserve(found.size());
+	for (const Residuals& residuals : found) {
+		if (residuals.*deviation >= 0)
+			values.push_back(residuals.*deviation);
+	}
+	return values.empty() ? 0 : quantile(values, share);
+}
+
+// The power of the rings that the residual deviation rises by. None where a clean mesh leaves none.
+double rise(double few, int few_rings, double many, int many_rings)
+{
+	if (!(few > 0 && many > 0))
+		return 0;
+	return std::log(many / few) / std::log(static_cast<double>(many_rings) / few_rings);
+}
+
+double first_rise(const std::vector<Residuals>& found)
+{
+	return rise(
+		at_share(found, &Residuals::narrowest, VERY_FLATTEST),
+		NARROWEST_RINGS,
+		at_share(found, &Residuals::narrow, VERY_FLATTEST),
+		NARROW_RINGS);
 }
 
 double irregularity_of_view(const std::vector<Point>& positions, const std::vector<Face>& faces)
@@ -133,6 +182,12 @@ double NoiseCorrelation::certainty() const
 	return std::max(on_voxels, elsewhere * CORRELATED(edge_correlation) * SLOW_GROWTH(growth));
 }
 
+double NoiseCorrelation::certainty_by_rise() const
+{
+	return RISES(first_rise) * NO_FURTHER(further_rise) * BENDS(first_rise - further_rise) *
+		   STRONG_IN_VOXELS(middle_level) * BELOW_FEATURES(middle_level);
+}
+
 double NoiseCorrelation::is_of_voxels() const
 {
 	return std::max(ON_VOXELS(voxels.on), NEAR_VOXELS(voxels.near));
@@ -149,28 +204,36 @@ NoiseCorrelation measure_noise_correlation(
 	NoiseCorrelation result;
 	result.view_irregularity = irregularity_of_view(positions, workspace.mesh.faces);
 	result.voxels = voxel_shares(workspace, positions);
-	if (!in_any_case && ONE_VIEW(result.view_irregularity) == 0 && result.is_of_voxels() == 0)
-		return result;
+	const bool shows_origin = ONE_VIEW(result.view_irregularity) > 0 || result.is_of_voxels() > 0;
 	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
 	const std::vector<Index> sample = sample_vertices(workspace, positions, SAMPLES);
 	std::vector<Residuals> found(sample.size());
 	std::vector<LocalHeights> heights(
 		static_cast<std::size_t>(workspace.execution.threads()),
 		LocalHeights(workspace, positions, smooth));
-	workspace.execution.parallel_for(
-		static_cast<Index>(sample.size()), GRAIN, [&](Index begin, Index end, int worker) {
-			LocalHeights& local = heights[static_cast<std::size_t>(worker)];
-			for (Index k = begin; k < end; ++k) {
-				const Index vertex = sample[static_cast<std::size_t>(k)];
-				Residuals& residuals = found[static_cast<std::size_t>(k)];
-				residuals.narrow = deviation(local, vertex, NARROW_RINGS);
-				residuals.correlated = deviation(local, vertex, CORRELATED_RINGS);
-				if (residuals.correlated >= 0)
-					residuals.correlation = local.edge_correlation();
-				residuals.middle = deviation(local, vertex, MIDDLE_RINGS);
-				residuals.wide = deviation(local, vertex, WIDE_RINGS);
-			}
-		});
+	const auto measure = [&](const auto& measure_at) {
+		workspace.execution.parallel_for(
+			static_cast<Index>(sample.size()), GRAIN, [&](Index begin, Index end, int worker) {
+				for (Index k = begin; k < end; ++k) {
+					const auto place = static_cast<std::size_t>(k);
+					measure_at(
+						heights[static_cast<std::size_t>(worker)], sample[place], found[place]);
+				}
+			});
+	};
+	measure([](LocalHeights& local, Index vertex, Residuals& residuals) {
+		residuals.narrowest = deviation(local, vertex, NARROWEST_RINGS);
+		residuals.narrow = deviation(local, vertex, NARROW_RINGS);
+	});
+	if (!in_any_case && !shows_origin && RISES(first_rise(found)) == 0)
+		return result;
+	measure([](LocalHeights& local, Index vertex, Residuals& residuals) {
+		residuals.correlated = deviation(local, vertex, CORRELATED_RINGS);
+		if (residuals.correlated >= 0)
+			residuals.correlation = local.edge_correlation();
+		residuals.middle = deviation(local, vertex, MIDDLE_RINGS);
+		residuals.wide = deviation(local, vertex, WIDE_RINGS);
+	});
 	found.erase(
 		std::remove_if(
 			found.begin(),
@@ -182,16 +245,9 @@ NoiseCorrelation measure_noise_correlation(
 	if (found.size() < FEWEST_SAMPLES)
 		return result;
 
-	const auto at_share = [&](double Residuals::*deviation, double share) {
-		std::vector<double> values;
-		values.reserve(found.size());
-		for (const Residuals& residuals : found)
-			values.push_back(residuals.*deviation);
-		return quantile(values, share);
-	};
-	const double narrow = at_share(&Residuals::narrow, FLATTEST);
-	const double correlated = at_share(&Residuals::correlated, FLATTEST);
-	const double wide = at_share(&Residuals::wide, FLATTEST);
+	const double narrow = at_share(found, &Residuals::narrow, FLATTEST);
+	const double correlated = at_share(found, &Residuals::correlated, FLATTEST);
+	const double wide = at_share(found, &Residuals::wide, FLATTEST);
 	double sum = 0;
 	double count = 0;
 	for (const Residuals& residuals : found) {
@@ -204,11 +260,18 @@ NoiseCorrelation measure_noise_correlation(
 	if (!(narrow > 0 && wide > 0))
 		return result;
 	result.growth = wide / narrow;
-	result.middle_growth = at_share(&Residuals::middle, FLATTEST) / narrow;
-	result.unevenness = at_share(&Residuals::wide, 0.5) / wide;
+	result.middle_growth = at_share(found, &Residuals::middle, FLATTEST) / narrow;
+	result.unevenness = at_share(found, &Residuals::wide, 0.5) / wide;
+	result.first_rise = first_rise(found);
+	result.further_rise = rise(
+		at_share(found, &Residuals::narrow, VERY_FLATTEST),
+		NARROW_RINGS,
+		at_share(found, &Residuals::wide, VERY_FLATTEST),
+		WIDE_RINGS);
 	const double edge = mean_edge_length(workspace, smooth);
 	result.level = wide / edge;
 	result.narrow_level = narrow / edge;
+	result.middle_level = at_share(found, &Residuals::middle, VERY_FLATTEST) / edge;
 	return result;
 }
 

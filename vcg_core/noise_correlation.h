@@ -8,12 +8,16 @@
 
 namespace orthopoly {
 
-/// What tells the noise of a depth camera or of a volume, correlated over several edges, from white
-/// noise.
+/// What tells noise correlated over several edges (of a depth camera or a volume, or white noise
+/// that was smoothed, remeshed or decimated) from white noise.
 ///
-/// Fine detail all over a surface looks the same as correlated noise to any statistic of heights,
-/// and what takes the one away ruins the other. So several things have to come together, and one of
-/// them is that the mesh itself shows where it comes from.
+/// Fine detail all over a surface looks much the same as correlated noise to a statistic of
+/// heights, and what takes the one away ruins the other. So several things have to come together.
+/// One of them is that the mesh itself shows where it comes from, or else that in its flattest
+/// places the residuals of polynomials rise with the rings at first and then hardly any more: they
+/// do where noise goes together over an edge or two. Those of a surface go on rising (a cubic
+/// leaves the fourth power of the rings where it is smooth, the first where it is rough), and those
+/// of white noise do not begin.
 struct NoiseCorrelation {
 	/// Root mean square deviation of the triangles' areas, as seen from the direction from which
 	/// they are most alike, over their mean: 0 for a regular grid seen from one side, 1 for a
@@ -29,6 +33,11 @@ struct NoiseCorrelation {
 	double growth = 0;
 	/// The same of polynomials between these over narrow ones, which see less of the surface.
 	double middle_growth = 0;
+	/// The power of the rings that the residual deviation rises by, from the narrowest polynomials
+	/// to the narrow ones and from these to the wide ones, in the flattest tenth of the places. 0
+	/// where not measured.
+	double first_rise = 0;
+	double further_rise = 0;
 	/// Residual deviation of wide polynomials at an ordinary place over that in the flattest ones:
 	/// 1 where the noise is all there is. 0 where not measured.
 	double unevenness = 0;
@@ -36,17 +45,25 @@ struct NoiseCorrelation {
 	/// lengths. 0 where not measured.
 	double level = 0;
 	double narrow_level = 0;
+	/// Of polynomials between these in the flattest tenth. 0 where not measured.
+	double middle_level = 0;
 
-	/// From 0 (white, or not to be told) to 1 (correlated), with a ramp between.
+	/// From 0 (white, or not to be told) to 1 (correlated), with a ramp between, where the mesh
+	/// shows where it comes from.
 	double certainty() const;
+	/// The same by the rise of the residuals, wherever the mesh comes from. Not to be asked where
+	/// white noise differs from place to place or is made of outliers: residuals rise there as
+	/// well, from places that have little of it into those around.
+	double certainty_by_rise() const;
 	/// From 0 to 1: how surely the mesh was extracted from a volume, whatever its noise.
 	double is_of_voxels() const;
 	/// How far the noise goes together, from 0 (over an edge or two) to 1 (over many).
 	double reach() const;
 };
 
-/// Measures the noise of a mesh. Where it comes neither from a depth camera nor from a volume, the
-/// rest is left out, unless it is wanted in any case. O(#V) time.
+/// Measures the noise of a mesh. Where it comes neither from a depth camera nor from a volume and
+/// residuals do not rise from the narrowest polynomials on, the rest is left out, unless it is
+/// wanted in any case. O(#V) time.
 NoiseCorrelation measure_noise_correlation(
 	const Workspace& workspace, const std::vector<Point>& positions, bool in_any_case = false);
 

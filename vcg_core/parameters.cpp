@@ -185,10 +185,11 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"white: every vertex is off by itself, as in most tests and many scans. scanner: "
 					"the errors of neighbouring vertices go together over several edges, as depth "
 					"cameras, volumes and surface reconstructions leave them: a rippled surface; much "
-					"wider surroundings are used. auto takes it for white unless the mesh is a single "
-					"view of a depth camera or was extracted from a volume, as reconstructions are, "
-					"and its noise clearly goes together; set scanner for such noise on other meshes. "
-					"Adaptive method only."))),
+					"wider surroundings are used. auto takes it for white unless its noise clearly "
+					"goes together: on a single view of a depth camera, on a mesh extracted from a "
+					"volume, as reconstructions are, and where smoothing or decimation left ripples on "
+					"smooth parts. Set scanner for such noise on other meshes, white to keep a fine "
+					"relief that is the same all over. Adaptive method only."))),
 		bind(
 			&Options::noise_level,
 			within(

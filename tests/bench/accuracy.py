@@ -41,16 +41,20 @@ CGAL_MESHES = ["fandisk", "anchor_dense", "blade", "bones", "elephant", "armadil
 # is none at one end of the mesh and twice sigma at the other, view along one axis, as scanners have it.
 # Volume is in the values of one that the mesh is extracted from anew, sigma in its cubes. Simplified is
 # on four times the faces, in their mean edge lengths, and simplified to the mesh's own number by MeshLab.
-# Points is on points of the surface, in the mean distance between them, that MeshLab reconstructs it from.
+# Points is on points of the surface, in the mean distance between them, that MeshLab reconstructs it from;
+# decimated the same with every other face of the reconstruction. Smoothed is normal, and smoothed a little.
 # Rounded has no draws: sigma is the step that coordinates are rounded to.
 NOISES = [
 	("normal", 0.1), ("normal", 0.2), ("normal", 0.3), ("normal", 0.6),
 	("random", 0.2), ("random", 0.4), ("isotropic", 0.3), ("impulsive", 0.5),
 	("uneven", 0.2), ("view", 0.3), ("volume", 0.3),
-	("simplified", 0.3), ("points", 0.5), ("rounded", 0.6),
+	("simplified", 0.3), ("points", 0.5), ("decimated", 0.5), ("smoothed", 0.3), ("rounded", 0.6),
 ]
 # What `orthopoly noise` makes them of.
-DIRECTIONS = {"impulsive": "random", "uneven": "normal", "view": "isotropic", "simplified": "normal"}
+DIRECTIONS = {
+	"impulsive": "random", "uneven": "normal", "view": "isotropic", "simplified": "normal",
+	"smoothed": "normal",
+}
 # Cubes of a volume along the longest side of the mesh, those around it, and how far from the surface
 # it has distances; open meshes have no inside to measure them from.
 VOLUME_CUBES = 80
@@ -59,6 +63,8 @@ VOLUME_BAND = 3
 OPEN_MESHES = ["height_field", "blade"]
 # The least number of points that a surface is reconstructed from.
 FEWEST_POINTS = 20000
+# Steps of MeshLab's Taubin smoothing that noise was smoothed by.
+SMOOTHING_STEPS = 3
 # The share of the vertices that impulsive noise moves.
 IMPULSIVE_SHARE = 0.2
 
@@ -268,10 +274,6 @@ def round_coordinates(case, target):
 	save(step * np.round(clean / step), faces, target)
 
 
-# Kinds of noise that come with a mesh of their own.
-NEW_SURFACES = {"volume": extract_from_volume, "points": reconstruct_from_points}
-
-
 def apply_meshlab(source, target, name, **parameters):
 	"""Writes what a filter of MeshLab makes of a mesh."""
 	import pymeshlab
@@ -283,6 +285,10 @@ def apply_meshlab(source, target, name, **parameters):
 		meshes.save_current_mesh(str(target))
 
 
+def simplify(path, face_count):
+	apply_meshlab(path, path, "meshing_decimation_quadric_edge_collapse", targetfacenum=face_count)
+
+
 def simplify_finer(case, kind, target):
 	"""Noise on four faces of each, simplified to as many as before."""
 	import pymeshlab
@@ -291,9 +297,19 @@ def simplify_finer(case, kind, target):
 		case.truth, target, "meshing_surface_subdivision_midpoint",
 		iterations=1, threshold=pymeshlab.PercentageValue(0))
 	tools.orthopoly("noise", target, target, "--sigma", case.sigma, *kind)
-	apply_meshlab(
-		target, target, "meshing_decimation_quadric_edge_collapse",
-		targetfacenum=len(load(case.truth)[1]))
+	simplify(target, len(load(case.truth)[1]))
+
+
+def decimate_reconstruction(case, seed, target):
+	reconstruct_from_points(case, seed, target)
+	simplify(target, len(load(target)[1]) // 2)
+
+
+# Kinds of noise that come with a mesh of their own.
+NEW_SURFACES = {
+	"volume": extract_from_volume, "points": reconstruct_from_points,
+	"decimated": decimate_reconstruction,
+}
 
 
 def make_noise(case, target):
@@ -315,6 +331,9 @@ def make_noise(case, target):
 	tools.orthopoly("noise", case.truth, target, "--sigma", case.sigma, *kind)
 	if case.kind in ("uneven", "view"):
 		keep_part_of_noise(case, target)
+	elif case.kind == "smoothed":
+		apply_meshlab(
+			target, target, "apply_coord_taubin_smoothing", stepsmoothnum=SMOOTHING_STEPS)
 
 
 def figures(report):

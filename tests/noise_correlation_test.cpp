@@ -185,6 +185,25 @@ TEST_CASE("Rough ground is not taken for noise", "[noise_correlation]")
 	CHECK(measured(noisy(rough, 0.1)).certainty_by_rise() == 0);
 }
 
+TEST_CASE("Grooves of one width do not rise like noise that was smoothed", "[noise_correlation]")
+{
+	const TriangleMesh sphere = make_sphere(40000);
+	const double edge = mean_edge_length(sphere.positions, sphere.faces);
+	for (const double height : {0.1, 0.2}) {
+		CAPTURE(height);
+		const NoiseCorrelation found =
+			measured(with_positions(sphere, each(sphere.positions, [&](const Point& p) {
+										const double along =
+											(p.x() + 2 * p.y() + p.z()) / std::sqrt(6.0);
+										const double waves = std::sin(2 * PI * along / (3 * edge));
+										return Point(p + height * edge * waves * p.normalized());
+									})));
+		CAPTURE(found.first_rise, found.further_rise);
+		CHECK(found.middle_level > 0.5 * height);
+		CHECK(found.certainty_by_rise() == 0);
+	}
+}
+
 TEST_CASE("Noise that was smoothed rises with the rings, and then no more", "[noise_correlation]")
 {
 	for (const std::string name : {"cube", "sphere", "torus", "part"}) {

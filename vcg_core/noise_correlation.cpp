@@ -70,11 +70,12 @@ constexpr Ramp NOT_TOO_STRONG = {0.55, 0.48};
 
 // Where nothing shows where a mesh comes from. The power of the rings that residuals rise by from
 // two rings to four: 0.2 to 0.45 of white noise on smooth surfaces and up to 0.8 on fine detail,
-// 0.65 to 1.2 of noise that was smoothed, remeshed or decimated, more of clean meshes. From four to
-// eight: 0.1 to 0.7 of white noise, 0.3 to 0.8 of smoothed one, 0.9 and far more of clean meshes.
-// The second is less than the first by 0.3 to 0.8 where noise was smoothed, by 0.25 at most where
-// it is white.
+// 0.65 to 1.2 of noise that was smoothed, remeshed or decimated, more of clean meshes (2 and more
+// where their grooves are a few edges wide and end there, as noise does). From four to eight: 0.1
+// to 0.7 of white noise, 0.3 to 0.8 of smoothed one, 0.9 and far more of clean meshes. The second
+// is less than the first by 0.3 to 0.8 where noise was smoothed, by 0.25 at most where it is white.
 constexpr Ramp RISES = {0.60, 0.75};
+constexpr Ramp NOT_STEEPLY = {1.60, 1.30};
 constexpr Ramp NO_FURTHER = {0.85, 0.70};
 constexpr Ramp BENDS = {0.25, 0.40};
 
@@ -184,8 +185,9 @@ double NoiseCorrelation::certainty() const
 
 double NoiseCorrelation::certainty_by_rise() const
 {
-	return RISES(first_rise) * NO_FURTHER(further_rise) * BENDS(first_rise - further_rise) *
-		   STRONG_IN_VOXELS(middle_level) * BELOW_FEATURES(middle_level);
+	return RISES(first_rise) * NOT_STEEPLY(first_rise) * NO_FURTHER(further_rise) *
+		   BENDS(first_rise - further_rise) * STRONG_IN_VOXELS(middle_level) *
+		   BELOW_FEATURES(middle_level);
 }
 
 double NoiseCorrelation::is_of_voxels() const

@@ -285,7 +285,7 @@ TEST_CASE("A level that is set is used, however small", "[adaptive_method]")
 TEST_CASE("The noise is read off the vertices that may move", "[adaptive_method]")
 {
 	// A clean mesh with a noisy part, and a noisy one with a clean part, a sixth each.
-	const TriangleMesh truth = make_part(40000);
+	const TriangleMesh truth = make_part(12000);
 	const TriangleMesh noise = noisy(truth, 0.2);
 	for (const bool clean_part : {false, true}) {
 		CAPTURE(clean_part);

@@ -191,13 +191,13 @@ TEST_CASE("Grooves of one width do not rise like noise that was smoothed", "[noi
 	const double edge = mean_edge_length(sphere.positions, sphere.faces);
 	for (const double height : {0.1, 0.2}) {
 		CAPTURE(height);
+		const auto grooved = [&](const Point& p) {
+			const double along = (p.x() + 2 * p.y() + p.z()) / std::sqrt(6.0);
+			const double waves = std::sin(2 * PI * along / (3 * edge));
+			return Point(p + height * edge * waves * p.normalized());
+		};
 		const NoiseCorrelation found =
-			measured(with_positions(sphere, each(sphere.positions, [&](const Point& p) {
-										const double along =
-											(p.x() + 2 * p.y() + p.z()) / std::sqrt(6.0);
-										const double waves = std::sin(2 * PI * along / (3 * edge));
-										return Point(p + height * edge * waves * p.normalized());
-									})));
+			measured(with_positions(sphere, each(sphere.positions, grooved)));
 		CAPTURE(found.first_rise, found.further_rise);
 		CHECK(found.middle_level > 0.5 * height);
 		CHECK(found.certainty_by_rise() == 0);

@@ -201,13 +201,15 @@ double NoiseCorrelation::reach() const
 }
 
 NoiseCorrelation measure_noise_correlation(
-	const Workspace& workspace, const std::vector<Point>& positions, bool in_any_case)
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const std::vector<Point>& smooth,
+	bool in_any_case)
 {
 	NoiseCorrelation result;
 	result.view_irregularity = irregularity_of_view(positions, workspace.mesh.faces);
 	result.voxels = voxel_shares(workspace, positions);
 	const bool shows_origin = ONE_VIEW(result.view_irregularity) > 0 || result.is_of_voxels() > 0;
-	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
 	const std::vector<Index> sample = sample_vertices(workspace, positions, SAMPLES);
 	std::vector<Residuals> found(sample.size());
 	std::vector<LocalHeights> heights(

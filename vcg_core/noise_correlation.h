@@ -61,10 +61,14 @@ struct NoiseCorrelation {
 	double reach() const;
 };
 
-/// Measures the noise of a mesh. Where it comes neither from a depth camera nor from a volume and
-/// residuals do not rise from the narrowest polynomials on, the rest is left out, unless it is
-/// wanted in any case. O(#V) time.
+/// Measures the noise of the positions. Where the mesh comes neither from a depth camera nor from a
+/// volume and residuals do not rise from the narrowest polynomials on, the rest is left out, unless
+/// it is wanted in any case. O(#V) time.
+/// @param smooth #V, what `surface_below_heights` makes of the positions
 NoiseCorrelation measure_noise_correlation(
-	const Workspace& workspace, const std::vector<Point>& positions, bool in_any_case = false);
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const std::vector<Point>& smooth,
+	bool in_any_case = false);
 
 } // namespace orthopoly

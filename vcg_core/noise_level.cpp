@@ -266,7 +266,14 @@ std::vector<ResidualVariance> similar_variances(
 
 NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions)
 {
-	const std::vector<Point> smooth = surface_below_heights(workspace, positions);
+	return estimate_noise_levels(workspace, positions, surface_below_heights(workspace, positions));
+}
+
+NoiseLevels estimate_noise_levels(
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const std::vector<Point>& smooth)
+{
 	NoiseSample read;
 	read.vertices = sample_vertices(workspace, positions, SAMPLES);
 	const std::vector<Index>& sample = read.vertices;

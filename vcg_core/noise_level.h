@@ -47,5 +47,10 @@ struct NoiseLevels {
 	UnevenNoise uneven = {};
 };
 NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions);
+/// @param smooth #V, what `surface_below_heights` makes of the positions
+NoiseLevels estimate_noise_levels(
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const std::vector<Point>& smooth);
 
 } // namespace orthopoly

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh_noise.h"
+
+#include "interpolation.h"
+#include "local_heights.h"
+#include "noise_correlation.h"
+#include "noise_level.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace orthopoly {
+
+namespace {
+
+// Deviation of rounded coordinates from which what rounding leaves goes together over several
+// edges, as terraces, and from which all of it does.
+constexpr double FINE_ROUNDING = 0.14;
+constexpr double COARSE_ROUNDING = 0.2;
+
+} // namespace
+
+MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& options)
+{
+	workspace.execution.begin_phase(0.05, 0.08, "estimating the noise");
+	const std::vector<Point>& measured = workspace.mesh.positions;
+	const std::vector<Point> smooth = surface_below_heights(workspace, measured);
+	const NoiseLevels levels = estimate_noise_levels(workspace, measured, smooth);
+	MeshNoise noise;
+	double by_rise = 0;
+	double narrow_level = 0;
+	if (options.noise_type != NoiseType::White) {
+		const bool scanner = options.noise_type == NoiseType::Scanner;
+		const NoiseCorrelation found =
+			measure_noise_correlation(workspace, measured, smooth, scanner);
+		noise.correlation = {scanner ? 1 : found.certainty(), found.reach()};
+		if (levels.rounding > 0 && !scanner)
+			noise.correlation.share = way_between(FINE_ROUNDING, COARSE_ROUNDING, levels.rounding);
+		else
+			by_rise = (1 - levels.uneven.certainty) * found.certainty_by_rise();
+		narrow_level = found.narrow_level;
+	}
+	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
+	if (noise.correlation.share == 0)
+		noise.uneven = levels.uneven;
+	// Beside a clean part noise looks like outliers, and so does noise that is strong and
+	// correlated.
+	if (noise.correlation.share < 0.5 && noise.uneven.certainty < 0.5)
+		noise.outliers = repair_outliers(workspace, levels);
+	noise.correlation.share =
+		std::max(noise.correlation.share, (1 - noise.outliers.share) * by_rise);
+	if (noise.correlation.share >= 0.5)
+		noise.outliers = {};
+	if (noise.correlation.share > 0 || noise.outliers.share > 0)
+		noise.uneven = {};
+	// What a polynomial over two rings follows of such noise, one over more does not.
+	const double rough =
+		noise.correlation.share > 0 ? std::max(levels.rough, narrow_level) : levels.rough;
+	// Noise that goes together over several edges grows with the rings as detail does.
+	const double white = noise.outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;
+	const double even = between(white, rough, noise.correlation.share);
+	const double level = between(even, noise.uneven.level, noise.uneven.certainty);
+	noise.level = between(level, noise.outliers.level, noise.outliers.share);
+	noise.most = std::max(rough, noise.uneven.level);
+	noise.rounding = levels.rounding;
+	return noise;
+}
+
+} // namespace orthopoly

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "denoise.h"
+#include "outliers.h"
+#include "uneven_noise.h"
+#include "workspace.h"
+
+namespace orthopoly {
+
+/// How the noise of neighbouring vertices goes together.
+struct Correlation {
+	/// How far it is taken to, 0 to 1.
+	double share = 0;
+	/// From 0 (over an edge or two) to 1 (over many).
+	double reach = 0;
+};
+
+/// What noise a mesh has: how much, and of what kinds.
+struct MeshNoise {
+	Correlation correlation;
+	/// Its factors are empty where the noise is the same everywhere.
+	UnevenNoise uneven;
+	/// Its share is zero where outliers do not make the noise.
+	OutlierRepair outliers;
+	/// In mean edge lengths, and what no noise and hardly any detail of the mesh is beyond.
+	double level = 0;
+	double most = 0;
+	/// What is certain to be noise of it: rounded coordinates.
+	double rounding = 0;
+};
+
+/// Estimates the noise of the workspace's mesh. Of the options, what noise the user says there is
+/// decides what is looked for. Reports progress from 0.05 to 0.1; throws Cancelled. O(#V) time.
+MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& options);
+
+} // namespace orthopoly

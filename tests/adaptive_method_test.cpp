@@ -116,7 +116,7 @@ TEST_CASE("Size, place, turn and order of a mesh do not matter", "[adaptive_meth
 	}
 }
 
-TEST_CASE("Not a single choice falls the other way on a turned mesh", "[adaptive_method]")
+TEST_CASE("Not a single choice falls the other way on a turned mesh", "[adaptive_method][slow]")
 {
 	const std::string name = GENERATE("cube", "sphere", "slivers and folds");
 	CAPTURE(name);
@@ -282,7 +282,7 @@ TEST_CASE("A level that is set is used, however small", "[adaptive_method]")
 	CHECK(denoised(mesh, options).status == Status::Done);
 }
 
-TEST_CASE("The noise is read off the vertices that may move", "[adaptive_method]")
+TEST_CASE("The noise is read off the vertices that may move", "[adaptive_method][slow]")
 {
 	// A clean mesh with a noisy part, and a noisy one with a clean part, a sixth each.
 	const TriangleMesh truth = make_part(12000);
@@ -364,7 +364,7 @@ TEST_CASE("Scanner noise is for the scanner mode", "[adaptive_method][slow]")
 	}
 }
 
-TEST_CASE("Noise that was smoothed is found and goes", "[adaptive_method]")
+TEST_CASE("Noise that was smoothed is found and goes", "[adaptive_method][slow]")
 {
 	const TriangleMesh truth = make_part(40000);
 	const TriangleMesh mesh = with_correlated_noise(truth, 0.12, 1);
@@ -378,7 +378,7 @@ TEST_CASE("Noise that was smoothed is found and goes", "[adaptive_method]")
 	CHECK(after.folded_faces < truth.face_count() / 5000);
 }
 
-TEST_CASE("Single views of a depth camera are found and treated as such", "[adaptive_method]")
+TEST_CASE("Single views of a depth camera are found and treated as such", "[adaptive_method][slow]")
 {
 	TriangleMesh truth = make_flat_grid(60);
 	for (Point& p : truth.positions)
@@ -540,7 +540,7 @@ TEST_CASE(
 	}
 }
 
-TEST_CASE("The noise of volumes is found and treated as such", "[adaptive_method]")
+TEST_CASE("The noise of volumes is found and treated as such", "[adaptive_method][slow]")
 {
 	const double radius = 0.7;
 	const auto truth_of = [&](const TriangleMesh& mesh) {

@@ -164,7 +164,7 @@ TEST_CASE("Noise along the view does not hide it", "[noise_correlation]")
 	CHECK(measured(mesh).view_irregularity < 1e-6);
 }
 
-TEST_CASE("Rough ground is not taken for noise", "[noise_correlation]")
+TEST_CASE("Rough ground is not taken for noise", "[noise_correlation][slow]")
 {
 	// Waves of several lengths over the whole of it, the longer the higher, a little white noise.
 	TriangleMesh mesh = make_flat_grid(80);
@@ -206,7 +206,8 @@ TEST_CASE("Grooves of one width do not rise like noise that was smoothed", "[noi
 	}
 }
 
-TEST_CASE("Noise that was smoothed rises with the rings, and then no more", "[noise_correlation]")
+TEST_CASE(
+	"Noise that was smoothed rises with the rings, and then no more", "[noise_correlation][slow]")
 {
 	for (const std::string name : {"cube", "sphere", "torus", "part"}) {
 		for (const double sigma : {0.08, 0.15}) {
@@ -245,7 +246,7 @@ TEST_CASE("Size, place, turn and order do not matter to the kind of noise", "[no
 	check(measured(Renumbered(mesh).mesh));
 }
 
-TEST_CASE("Coarse boxes are no volumes", "[noise_correlation]")
+TEST_CASE("Coarse boxes are no volumes", "[noise_correlation][slow]")
 {
 	// Edges everywhere look like noise.
 	for (const std::string name : {"cube", "part", "thin_plate"}) {

@@ -54,7 +54,7 @@ TEST_CASE(
 	}
 }
 
-TEST_CASE("The noise is estimated where there is an edge in every ring", "[noise_level]")
+TEST_CASE("The noise is estimated where there is an edge in every ring", "[noise_level][slow]")
 {
 	const auto direction =
 		GENERATE(NoiseDirection::Normal, NoiseDirection::Random, NoiseDirection::Isotropic);
@@ -69,7 +69,7 @@ TEST_CASE("The noise is estimated where there is an edge in every ring", "[noise
 	}
 }
 
-TEST_CASE("Clean meshes read as clean", "[noise_level]")
+TEST_CASE("Clean meshes read as clean", "[noise_level][slow]")
 {
 	for (const std::string name :
 		 {"cube", "sphere", "torus", "part", "height_field", "thin_plate"}) {
@@ -125,7 +125,7 @@ TEST_CASE("A drawn part of few faces reads as clean, and as noisy with noise", "
 	}
 }
 
-TEST_CASE("Rounded coordinates are noise, a drawn lattice is none", "[noise_level]")
+TEST_CASE("Rounded coordinates are noise, a drawn lattice is none", "[noise_level][slow]")
 {
 	for (const double step : {0.15, 0.3, 0.6}) {
 		CAPTURE(step);
@@ -171,7 +171,7 @@ TEST_CASE("A mesh without neighbours enough reads as clean", "[noise_level]")
 	CHECK(estimated(unit_square()) == 0);
 }
 
-TEST_CASE("The estimate does not depend on size, place or order", "[noise_level]")
+TEST_CASE("The estimate does not depend on size, place or order", "[noise_level][slow]")
 {
 	// More vertices than are sampled, so that the choice is put to the test as well.
 	TriangleMesh mesh = noisy(make_part(90000), 0.2);

@@ -77,7 +77,7 @@ TEST_CASE("Noise of all vertices has no outliers worth the name", "[outliers][sl
 	}
 }
 
-TEST_CASE("Outliers explain impulsive noise, detail or not, and no other", "[outliers]")
+TEST_CASE("Outliers explain impulsive noise, detail or not, and no other", "[outliers][slow]")
 {
 	const auto repaired = [](const TriangleMesh& mesh) {
 		const StepFixture f(mesh);
@@ -125,7 +125,7 @@ TEST_CASE("Outliers are the same wherever the mesh is and however it is numbered
 		largest_distance(renumbered.in_given_order(found.positions), here.positions) < 1e-8 * edge);
 }
 
-TEST_CASE("Outliers are put back within reason on anything", "[outliers]")
+TEST_CASE("Outliers are put back within reason on anything", "[outliers][slow]")
 {
 	for (const Recipe& recipe : recipes()) {
 		if (!recipe.can_be_denoised)

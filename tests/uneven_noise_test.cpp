@@ -69,7 +69,7 @@ mean_angle_beyond(const std::vector<Point>& positions, const TriangleMesh& truth
 
 } // namespace
 
-TEST_CASE("Even noise is taken for even", "[uneven_noise]")
+TEST_CASE("Even noise is taken for even", "[uneven_noise][slow]")
 {
 	const std::string name = GENERATE("cube", "sphere", "torus", "part", "height_field");
 	const auto direction = GENERATE(NoiseDirection::Normal, NoiseDirection::Isotropic);

@@ -378,6 +378,24 @@ TEST_CASE("Noise that was smoothed is found and goes", "[adaptive_method][slow]"
 	CHECK(after.folded_faces < truth.face_count() / 5000);
 }
 
+TEST_CASE(
+	"Ripples fainter than the noise that counts go where they are certain",
+	"[adaptive_method][slow]")
+{
+	const TriangleMesh truth = make_part(40000);
+	const TriangleMesh mesh = with_correlated_noise(truth, 0.03, 1);
+	const DenoiseResult result = denoised(mesh);
+	CHECK(result.status == Status::Done);
+	CHECK(result.resolved.noise_type == NoiseType::Scanner);
+	CHECK(result.estimated_noise < 0.025);
+	const ErrorMeasures before = measure(mesh, truth);
+	const ErrorMeasures after = measure(with_positions(mesh, result.positions), truth);
+	CAPTURE(before.mean_angle, after.mean_angle, after.relative_vertex_error);
+	CHECK(after.mean_angle < 0.6 * before.mean_angle);
+	CHECK(after.relative_vertex_error < before.relative_vertex_error);
+	CHECK(denoised(noisy(truth, 0.02)).status == Status::NothingToDo);
+}
+
 TEST_CASE("Single views of a depth camera are found and treated as such", "[adaptive_method][slow]")
 {
 	TriangleMesh truth = make_flat_grid(60);

@@ -63,7 +63,10 @@ std::optional<AdaptiveRun> run_at(
 {
 	const AdaptivePlan plan = plan_for(options, noise, correlation);
 	record(plan, result.resolved);
-	const double least = options.noise_level ? NEGLIGIBLE_NOISE : LEAST_NOISE;
+	// Noise that goes together over several edges was found by more than its level.
+	double least = plan.is_mostly_white() ? LEAST_NOISE : 0;
+	if (options.noise_level)
+		least = NEGLIGIBLE_NOISE;
 	const bool nothing = options.noise_type != NoiseType::Scanner && noise < least;
 	result.status = nothing ? DenoiseResult::Status::NothingToDo : DenoiseResult::Status::Done;
 	result.iterations_done = nothing ? 0 : plan.iterations;

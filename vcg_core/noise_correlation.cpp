@@ -79,6 +79,10 @@ constexpr Ramp NOT_STEEPLY = {1.60, 1.30};
 constexpr Ramp NO_FURTHER = {0.85, 0.70};
 constexpr Ramp BENDS = {0.25, 0.40};
 
+// Strength from which such noise is one: reconstructions of points whose directions are off have
+// ripples of 0.01, which are seen on flat faces. Rounding and the chance of drawn faces leave less.
+constexpr Ramp STRONG_BY_RISE = {0.006, 0.012};
+
 // Noise of 0.25 leaves 0.15 once it was smoothed, noise of half an edge less than 0.3. More is
 // features of a coarse mesh, a few edges wide, beyond which residuals do not rise either.
 constexpr Ramp BELOW_FEATURES = {0.32, 0.24};
@@ -186,7 +190,7 @@ double NoiseCorrelation::certainty() const
 double NoiseCorrelation::certainty_by_rise() const
 {
 	return RISES(first_rise) * NOT_STEEPLY(first_rise) * NO_FURTHER(further_rise) *
-		   BENDS(first_rise - further_rise) * STRONG_IN_VOXELS(middle_level) *
+		   BENDS(first_rise - further_rise) * STRONG_BY_RISE(middle_level) *
 		   BELOW_FEATURES(middle_level);
 }
 

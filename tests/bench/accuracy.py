@@ -48,7 +48,8 @@ NOISES = [
 	("normal", 0.1), ("normal", 0.2), ("normal", 0.3), ("normal", 0.6),
 	("random", 0.2), ("random", 0.4), ("isotropic", 0.3), ("impulsive", 0.5),
 	("uneven", 0.2), ("view", 0.3), ("volume", 0.3),
-	("simplified", 0.3), ("points", 0.5), ("decimated", 0.5), ("smoothed", 0.3), ("rounded", 0.6),
+	("simplified", 0.3), ("points", 0.1), ("points", 0.5), ("decimated", 0.5), ("smoothed", 0.3),
+	("rounded", 0.6),
 ]
 # What `orthopoly noise` makes them of.
 DIRECTIONS = {

@@ -16,6 +16,7 @@ import argparse
 import concurrent.futures
 import hashlib
 import json
+import os
 import pathlib
 import re
 import statistics
@@ -821,3 +822,6 @@ if __name__ == "__main__":
 		main()
 	except (tools.BenchError, OSError) as error:
 		sys.exit(f"accuracy: {error}")
+	# Everything is written. MeshLab's libraries abort now and then when they are unloaded.
+	sys.stdout.flush()
+	os._exit(0)

@@ -167,7 +167,7 @@ TEST_CASE("the resolved options give the same result again", "[denoise]")
 	const auto method = GENERATE(Method::Adaptive, Method::Paper);
 	// The first iteration of the adaptive method counts for nothing, for a part, and in full.
 	const auto sigma = GENERATE(0.1, 0.15, 0.2);
-	const TriangleMesh noisy = with_noise(make_part(4000), sigma);
+	const TriangleMesh noisy = with_noise(make_part(1500), sigma);
 	const DenoiseResult first = denoised(noisy, options_of(method));
 	const DenoiseResult second = denoised(noisy, first.resolved);
 	CHECK(same_bits(first.positions, second.positions));
@@ -237,7 +237,7 @@ TEST_CASE("every class of mesh gets through every option", "[denoise][slow]")
 TEST_CASE("every parameter changes the result, the number of threads does not", "[denoise]")
 {
 	// Boundary, flat and curved parts and a step: something for every parameter to act upon.
-	const TriangleMesh mesh = with_noise(make_height_field(2500), 0.2, NoiseDirection::Random);
+	const TriangleMesh mesh = with_noise(make_height_field(1000), 0.2, NoiseDirection::Random);
 	std::map<Method, std::vector<Point>> defaults;
 	for (const auto method : {Method::Adaptive, Method::Paper})
 		defaults[method] = denoised(mesh, options_of(method)).positions;

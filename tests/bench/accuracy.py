@@ -650,7 +650,15 @@ def coloured_by_error(path, title_, truth, limit):
 		cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 		return cross / np.maximum(np.linalg.norm(cross, axis=1), 1e-300)[:, None]
 
-	cosines = np.einsum("ij,ij->i", normals(mesh), normals(clean)).clip(-1, 1)
+	paired = normals(clean)
+	if not np.array_equal(mesh.faces, clean.faces):
+		import igl
+
+		centroids = mesh.vertices[mesh.faces].mean(axis=1)
+		_, nearest, _ = igl.point_mesh_squared_distance(
+			centroids, clean.vertices, clean.faces.astype(np.int64))
+		paired = paired[nearest]
+	cosines = np.einsum("ij,ij->i", normals(mesh), paired).clip(-1, 1)
 	mesh.colours = render.ERROR_COLOURS(np.degrees(np.arccos(cosines)) / limit)[:, :3]
 	return mesh
 

@@ -12,8 +12,7 @@ struct Rings {
 	int largest;
 };
 
-/// Everything a run of the adaptive method goes by. Its steps' own options leave to it what depends
-/// on the noise.
+/// What a run of the adaptive method goes by: all that depends on the noise or can be set.
 struct AdaptivePlan {
 	/// How far the noise is taken as correlated, 0 to 1.
 	double correlation = 0;

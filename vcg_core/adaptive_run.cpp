@@ -129,11 +129,7 @@ public:
 	{
 	}
 
-	/// The overall noise it went by, after a run, in the caller's length unit.
-	double sigma() const { return deviations_.overall(); }
-
-	/// Returns what it took from the vertices; nothing where noise is correlated.
-	TakenMoves run()
+	AdaptiveRun run()
 	{
 		prefilter();
 		// The level is in edge lengths of the surface below the noise, which lengthens them.
@@ -171,8 +167,10 @@ public:
 		}
 		// Noise that goes together over several edges moves vertices together as well.
 		if (plan_.correlation == 1)
-			return {};
-		return give_back_detail(workspace_, deviations_, 1 - plan_.correlation, positions_);
+			return {{}, deviations_.overall()};
+		return {
+			give_back_detail(workspace_, deviations_, 1 - plan_.correlation, positions_),
+			deviations_.overall()};
 	}
 
 private:
@@ -330,9 +328,7 @@ AdaptiveRun run_adaptively(
 	const std::vector<double>& factors,
 	std::vector<Point>& positions)
 {
-	AdaptiveRunner runner(workspace, plan, factors, positions);
-	const TakenMoves taken = runner.run();
-	return {taken, runner.sigma()};
+	return AdaptiveRunner(workspace, plan, factors, positions).run();
 }
 
 } // namespace orthopoly

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <random>
 
@@ -206,6 +207,30 @@ TEST_CASE("Faces that noise scatters more are not taken for features", "[normal_
 	const double alike = angle();
 	field.scatters = scatters;
 	CHECK(angle() < 0.9 * alike);
+}
+
+TEST_CASE("The noise is told by the faces that have some", "[normal_filter]")
+{
+	// By all of them there would be next to none.
+	const StepFixture f(make_flat_grid(40));
+	NormalField field = field_of(f.geometry);
+	const std::vector<Point> scattered_all = scattered(field.data, 10);
+	std::vector<std::uint8_t> noisy(field.data.size());
+	field.scatters.resize(field.data.size());
+	for (std::size_t i = 0; i < noisy.size(); ++i) {
+		noisy[i] = field.nodes[i].x() > 0.5 ? 1 : 0;
+		field.scatters[i] = noisy[i] != 0 ? 1 : 0.01;
+		if (noisy[i] != 0)
+			field.data[i] = scattered_all[i];
+	}
+	const auto angle = [&] {
+		return mean_angle(filter_normals(f.workspace, field, rings(2, 4)), [](std::size_t) {
+			return Point(0, 0, 1);
+		});
+	};
+	const double by_all = angle();
+	field.noisy = noisy;
+	CHECK(angle() < 0.8 * by_all);
 }
 
 TEST_CASE("Faces without a guide or a weight take no part", "[normal_filter]")

@@ -46,9 +46,19 @@ constexpr Index MOST_PROBED = 100000;
 // A noise level that is set counts from here: less is rounding in the files that meshes come in.
 constexpr double NEGLIGIBLE_NOISE = 1e-6;
 
+// Share of the vertices whose noise the method is made for where it differs from place to place:
+// what takes strong noise away does little where there is less, since the deviations tell it so.
+constexpr double MOST_SHARE = 0.75;
+
 // Share of the vertices whose noise is below the low end of what is told of it, and above the high
 // one.
 constexpr double LOW_SHARE = 0.1;
+
+// What the noise is up to at most vertices, over the overall level.
+double factor_planned_for(std::vector<double> factors)
+{
+	return factors.empty() ? 1 : std::max(1.0, quantile(factors, MOST_SHARE));
+}
 
 // Runs the method for that noise, from the workspace's mesh on. Returns nothing where there is too
 // little noise to do anything.
@@ -61,7 +71,8 @@ std::optional<AdaptiveRun> run_at(
 	DenoiseResult& result,
 	std::vector<Point>& positions)
 {
-	const AdaptivePlan plan = plan_for(options, noise, correlation);
+	AdaptivePlan plan = plan_for(options, noise * factor_planned_for(factors), correlation);
+	plan.noise = noise;
 	record(plan, result.resolved);
 	// Noise that goes together over several edges was found by more than its level.
 	double least = plan.is_mostly_white() ? LEAST_NOISE : 0;

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,10 +31,16 @@ constexpr double PREFILTER_BOUND = 3;
 
 // More pairs where faces are folded over, as low as noise can fold them: it moves the height of a
 // triangle by up to about four times sqrt(1.5) standard deviations. And how far these may move
-// vertices.
+// vertices: of the largest deviations, wherever they are, since deviations along the normal say
+// nothing of those along the surface, which fold faces too. Noise along one axis has but these
+// where it is seen edge on.
 constexpr int UNFOLDING_PAIRS = 3;
 constexpr double FOLD_HEIGHT = 5;
 constexpr double UNFOLDING_BOUND = 4;
+
+// Share of the overall deviation from which a face tells by how much noise there is. Clean parts
+// would only tell that there is none.
+constexpr double NOISY = 0.5;
 
 // A face's cosine to its surroundings, or to its target in the vertex update, that says folded.
 constexpr double FOLD_COSINE = 0.3;
@@ -92,15 +99,32 @@ std::vector<double> scatters_by(
 	return scatters;
 }
 
+// Flags of the faces whose normals the noise scatters enough to tell it by: #F, or empty where it
+// is the same everywhere.
+std::vector<std::uint8_t> noisy_faces(const Deviations& deviations, const Workspace& workspace)
+{
+	if (!deviations.differ())
+		return {};
+	const double least = NOISY * deviations.overall();
+	std::vector<std::uint8_t> flags(workspace.mesh.faces.size());
+	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
+		const bool is_noisy = deviations.square_at(workspace.mesh.faces[i]) >= least * least;
+		flags[i] = is_noisy ? 1 : 0;
+	});
+	return flags;
+}
+
 // The normals to fit: the prefiltered original's, blended with the current ones by area.
 NormalField normal_field(
 	const FaceGeometry& original,
 	FaceGeometry current,
 	const std::vector<double>& scatters,
+	const std::vector<std::uint8_t>& noisy,
 	Execution& execution)
 {
 	NormalField field;
 	field.scatters = scatters;
+	field.noisy = noisy;
 	field.guides = std::move(current.normals);
 	field.nodes = std::move(current.centroids);
 	field.data.resize(field.guides.size());
@@ -137,10 +161,15 @@ public:
 		const std::vector<Point> start = positions_;
 		const FaceGeometry original = face_geometry(workspace_, positions_);
 		const std::vector<double> scatters = scatters_by(deviations_, workspace_, start);
+		const std::vector<std::uint8_t> noisy = noisy_faces(deviations_, workspace_);
 		for (int iteration = 0; iteration < plan_.iterations; ++iteration) {
 			const bool last = iteration + 1 == plan_.iterations;
 			NormalField field = normal_field(
-				original, face_geometry(workspace_, positions_), scatters, workspace_.execution);
+				original,
+				face_geometry(workspace_, positions_),
+				scatters,
+				noisy,
+				workspace_.execution);
 			std::vector<Point> normals = filter(field, iteration);
 			const std::vector<Point> centroids = std::move(field.nodes);
 			field = {};
@@ -159,9 +188,9 @@ public:
 				update.paces = &paces;
 			update_vertices(workspace_, normals, update, positions_);
 			// Eq. 12 lets vertices slide where normals do not agree; noise does not reach so far.
-			bound_drift(start, DRIFT_BOUND);
+			bound_drift(start, DRIFT_BOUND, deviations_);
 			if (unfold_faces(workspace_, normals, positions_))
-				bound_drift(start, DRIFT_BOUND);
+				bound_drift(start, DRIFT_BOUND, deviations_.largest());
 			if (!last && plan_.guiding < 1)
 				go_back(start, 1 - plan_.guiding);
 		}
@@ -187,7 +216,7 @@ private:
 
 	// Keeps every vertex within so many deviations of the way from where it was measured to a
 	// place.
-	void bound_drift(const std::vector<Point>& to, double bound)
+	void bound_drift(const std::vector<Point>& to, double bound, const Deviations& deviations)
 	{
 		if (plan_.correlation == 1)
 			return;
@@ -200,7 +229,7 @@ private:
 			const double share = square > 0 ? move.dot(way) / square : 0;
 			const Point drift = move - std::min(1.0, std::max(0.0, share)) * way;
 			const double length = drift.norm();
-			const double longest = bound * deviations_[i];
+			const double longest = bound * deviations[i];
 			if (length > longest)
 				positions_[i] -= (1 - longest / length) * drift;
 		});
@@ -221,12 +250,12 @@ private:
 		taubin_smooth(workspace_, prefilter_pairs(), positions_);
 		if (plan_.correlation == 1)
 			return;
-		bound_drift(measured, PREFILTER_BOUND);
+		bound_drift(measured, PREFILTER_BOUND, deviations_);
 		const FoldCriterion criterion {FOLD_COSINE, FOLD_HEIGHT * deviations_.largest()};
 		for (int pair = 0; pair < UNFOLDING_PAIRS; ++pair)
 			taubin_smooth(
 				workspace_, 1, positions_, folded_vertices(workspace_, positions_, criterion));
-		bound_drift(measured, UNFOLDING_BOUND);
+		bound_drift(measured, UNFOLDING_BOUND, deviations_.largest());
 	}
 
 	// Taubin pairs of each vertex: small triangles scatter more, and fold before large ones do.

@@ -30,6 +30,7 @@ public:
 				   overall_;
 	}
 
+	bool differ() const { return factors_ != nullptr; }
 	/// Of a vertex, over the overall one.
 	double factor(std::size_t vertex) const
 	{

@@ -456,18 +456,35 @@ private:
 	Structure<Lanes> tried_;
 };
 
+// The faces that the noise floor is read at, in ascending order.
+std::vector<Index>
+sample_noise(const std::vector<double>& areas, const std::vector<std::uint8_t>& noisy)
+{
+	std::vector<Index> faces;
+	std::vector<double> their_areas;
+	for (std::size_t i = 0; i < areas.size(); ++i) {
+		if (noisy.empty() || noisy[i] != 0) {
+			faces.push_back(static_cast<Index>(i));
+			their_areas.push_back(areas[i]);
+		}
+	}
+	const Index wanted = std::min(
+		LARGEST_SAMPLE, std::max(LEAST_SAMPLE, static_cast<Index>(faces.size()) / SAMPLE_EVERY));
+	std::vector<Index> sample = sample_by_value(their_areas, wanted);
+	for (Index& chosen : sample)
+		chosen = faces[at(chosen)];
+	std::sort(sample.begin(), sample.end());
+	return sample;
+}
+
 // The noise variance of the data, as structures of each size see it.
 template<class AnyStructures>
 Variances measure_noise_floors(
 	const Workspace& workspace,
-	const std::vector<double>& areas,
+	const std::vector<Index>& sample,
 	const NormalFilterOptions& options,
 	std::deque<AnyStructures>& structures)
 {
-	const Index wanted = std::min(
-		LARGEST_SAMPLE, std::max(LEAST_SAMPLE, workspace.mesh.face_count() / SAMPLE_EVERY));
-	std::vector<Index> sample = sample_by_value(areas, wanted);
-	std::sort(sample.begin(), sample.end());
 	std::vector<Variances> variances(sample.size());
 	workspace.execution.parallel_for(
 		Patch::count(workspace), 1, [&](Index begin, Index end, int worker) {
@@ -524,7 +541,8 @@ let_vote(const Workspace& workspace, const NormalField& field, const NormalFilte
 	workspace.execution.begin_part(0, 16);
 	// By areas as measured: what filtering has made of them has fewer digits that are no rounding.
 	const std::vector<double> areas = face_geometry(workspace, workspace.mesh.positions).areas;
-	const Variances floors = measure_noise_floors(workspace, areas, options, structures);
+	const Variances floors =
+		measure_noise_floors(workspace, sample_noise(areas, field.noisy), options, structures);
 	workspace.execution.begin_part(1, 16, 15);
 	const std::vector<std::uint8_t> chosen =
 		choose_evenly(workspace, areas, options.faces_per_structure);

@@ -4,6 +4,7 @@
 #include "lanes.h"
 #include "workspace.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace orthopoly {
@@ -20,6 +21,8 @@ struct NormalField {
 	std::vector<Point> nodes;
 	/// Variances of the data by noise alone, up to a common factor; positive. Empty: all the same.
 	std::vector<double> scatters = {};
+	/// Flags of the faces whose data have noise to tell its variance by. Empty: all have.
+	std::vector<std::uint8_t> noisy = {};
 };
 
 /// Options of `filter_normals`.

@@ -48,6 +48,13 @@ std::vector<Point> scattered(std::vector<Point> normals, double degrees)
 	return normals;
 }
 
+// Mean angle of the filtered normals of a flat grid to what they were before the noise, degrees.
+double angle_to_up(const Workspace& workspace, const NormalField& field)
+{
+	return mean_angle(
+		filter_normals(workspace, field, rings(2, 4)), [](std::size_t) { return Point(0, 0, 1); });
+}
+
 // A flat grid bent along its middle: two halves at 40 degrees to each other.
 TriangleMesh make_roof(int n)
 {
@@ -199,14 +206,9 @@ TEST_CASE("Faces that noise scatters more are not taken for features", "[normal_
 		scatters[i] = is_small ? 25 : 1;
 		field.data[i] = is_small ? much[i] : little[i];
 	}
-	const auto angle = [&] {
-		return mean_angle(filter_normals(f.workspace, field, rings(2, 4)), [](std::size_t) {
-			return Point(0, 0, 1);
-		});
-	};
-	const double alike = angle();
+	const double alike = angle_to_up(f.workspace, field);
 	field.scatters = scatters;
-	CHECK(angle() < 0.9 * alike);
+	CHECK(angle_to_up(f.workspace, field) < 0.9 * alike);
 }
 
 TEST_CASE("The noise is told by the faces that have some", "[normal_filter]")
@@ -223,14 +225,9 @@ TEST_CASE("The noise is told by the faces that have some", "[normal_filter]")
 		if (noisy[i] != 0)
 			field.data[i] = scattered_all[i];
 	}
-	const auto angle = [&] {
-		return mean_angle(filter_normals(f.workspace, field, rings(2, 4)), [](std::size_t) {
-			return Point(0, 0, 1);
-		});
-	};
-	const double by_all = angle();
+	const double by_all = angle_to_up(f.workspace, field);
 	field.noisy = noisy;
-	CHECK(angle() < 0.8 * by_all);
+	CHECK(angle_to_up(f.workspace, field) < 0.8 * by_all);
 }
 
 TEST_CASE("Faces without a guide or a weight take no part", "[normal_filter]")

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "outliers.h"
 
+#include "adaptive_plan.h"
+#include "adaptive_run.h"
+#include "inspection.h"
 #include "measures.h"
 #include "method_support.h"
 #include "noise_level.h"
@@ -75,6 +78,22 @@ TEST_CASE("Noise of all vertices has no outliers worth the name", "[outliers][sl
 			estimate_noise_levels(f.workspace, found.positions).ordinary >
 			0.85 * estimate_noise_levels(f.workspace, mesh.positions).ordinary);
 	}
+}
+
+TEST_CASE("Faces that outliers folded open where these were not found", "[outliers]")
+{
+	const TriangleMesh mesh = impulsive(make_sphere(4000), 0.8, 0.05);
+	const StepFixture f(mesh);
+	AdaptivePlan plan = plan_for({}, 0.05, {});
+	const auto folds_left = [&](double factor) {
+		plan.fold_factor = factor;
+		std::vector<Point> positions = mesh.positions;
+		run_adaptively(f.workspace, plan, {}, positions);
+		return count_folded_faces(positions, f.workspace);
+	};
+	const Index by_level = folds_left(1);
+	CHECK(by_level > 10);
+	CHECK(folds_left(8) < 0.3 * by_level);
 }
 
 TEST_CASE("Outliers explain impulsive noise, detail or not, and no other", "[outliers][slow]")

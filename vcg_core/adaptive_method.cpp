@@ -60,25 +60,28 @@ double factor_planned_for(std::vector<double> factors)
 	return factors.empty() ? 1 : std::max(1.0, quantile(factors, MOST_SHARE));
 }
 
-// Runs the method for that noise, from the workspace's mesh on. Returns nothing where there is too
-// little noise to do anything.
+// Runs the method at that level of the noise, strength included, from the workspace's mesh on.
+// Returns nothing where there is too little noise to do anything.
 std::optional<AdaptiveRun> run_at(
-	double noise,
+	double level,
+	const MeshNoise& noise,
 	const Workspace& workspace,
 	const DenoiseOptions& options,
-	const Correlation& correlation,
-	const std::vector<double>& factors,
 	DenoiseResult& result,
 	std::vector<Point>& positions)
 {
-	AdaptivePlan plan = plan_for(options, noise * factor_planned_for(factors), correlation);
-	plan.noise = noise;
+	const std::vector<double>& factors = noise.uneven.factors;
+	AdaptivePlan plan = plan_for(options, level * factor_planned_for(factors), noise.correlation);
+	plan.noise = level;
+	// Outliers that were not found fold faces too, and are none of the level.
+	if (noise.outliers.share > 0 && level > 0)
+		plan.fold_factor = std::max(1.0, strength_factor(options.strength) * noise.most / level);
 	record(plan, result.resolved);
 	// Noise that goes together over several edges was found by more than its level.
 	double least = plan.is_mostly_white() ? LEAST_NOISE : 0;
 	if (options.noise_level)
 		least = NEGLIGIBLE_NOISE;
-	const bool nothing = options.noise_type != NoiseType::Scanner && noise < least;
+	const bool nothing = options.noise_type != NoiseType::Scanner && level < least;
 	result.status = nothing ? DenoiseResult::Status::NothingToDo : DenoiseResult::Status::Done;
 	result.iterations_done = nothing ? 0 : plan.iterations;
 	if (nothing)
@@ -146,14 +149,7 @@ void lower_and_run(
 {
 	const double strength = strength_factor(options.strength);
 	const auto run = [&](double at_level) {
-		return run_at(
-			at_level,
-			workspace,
-			options,
-			noise.correlation,
-			noise.uneven.factors,
-			result,
-			positions);
+		return run_at(at_level, noise, workspace, options, result, positions);
 	};
 	double& level = *result.resolved.noise_level;
 	std::optional<AdaptiveRun> last = run(strength * level);
@@ -187,16 +183,16 @@ void lower_and_run(
 void repair_and_run(
 	const Workspace& workspace,
 	const DenoiseOptions& options,
-	const Correlation& correlation,
-	const OutlierRepair& outliers,
+	const MeshNoise& noise,
 	DenoiseResult& result,
 	std::vector<Point>& positions)
 {
-	const double noise = *result.resolved.noise_level * strength_factor(options.strength);
+	const OutlierRepair& outliers = noise.outliers;
+	const double level = *result.resolved.noise_level * strength_factor(options.strength);
 	TriangleMesh mesh = workspace.mesh;
 	mesh.positions = outliers.positions;
 	const Workspace repaired(mesh, workspace.execution);
-	if (!run_at(noise, repaired, options, correlation, {}, result, positions))
+	if (!run_at(level, noise, repaired, options, result, positions))
 		return;
 	give_back_inliers(
 		repaired,
@@ -231,7 +227,7 @@ void run_for(
 	if (noise.outliers.share == 0)
 		lower_and_run(workspace, options, noise, result, positions);
 	else
-		repair_and_run(workspace, options, noise.correlation, noise.outliers, result, positions);
+		repair_and_run(workspace, options, noise, result, positions);
 	record_range(noise.uneven.factors, result);
 }
 

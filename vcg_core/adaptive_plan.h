@@ -18,6 +18,8 @@ struct AdaptivePlan {
 	double correlation = 0;
 	/// In mean edge lengths, strength included.
 	double noise = 0;
+	/// What may have folded faces, in times of that level: 1 or more.
+	double fold_factor = 1;
 	/// Taubin pairs of the prefilter where noise is correlated.
 	double scanner_pairs = 0;
 	int iterations = 1;

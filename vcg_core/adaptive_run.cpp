@@ -190,7 +190,7 @@ public:
 			// Eq. 12 lets vertices slide where normals do not agree; noise does not reach so far.
 			bound_drift(start, DRIFT_BOUND, deviations_);
 			if (unfold_faces(workspace_, normals, positions_))
-				bound_drift(start, DRIFT_BOUND, deviations_.largest());
+				bound_drift(start, DRIFT_BOUND, folding_deviation());
 			if (!last && plan_.guiding < 1)
 				go_back(start, 1 - plan_.guiding);
 		}
@@ -212,6 +212,12 @@ private:
 			0.15 + share * (iteration + to),
 			"iteration " + std::to_string(iteration + 1) + " of " +
 				std::to_string(plan_.iterations) + ": " + words);
+	}
+
+	// The largest standard deviation that may have folded faces.
+	double folding_deviation() const
+	{
+		return std::max(deviations_.largest(), plan_.fold_factor * deviations_.overall());
 	}
 
 	// Keeps every vertex within so many deviations of the way from where it was measured to a
@@ -251,11 +257,11 @@ private:
 		if (plan_.correlation == 1)
 			return;
 		bound_drift(measured, PREFILTER_BOUND, deviations_);
-		const FoldCriterion criterion {FOLD_COSINE, FOLD_HEIGHT * deviations_.largest()};
+		const FoldCriterion criterion {FOLD_COSINE, FOLD_HEIGHT * folding_deviation()};
 		for (int pair = 0; pair < UNFOLDING_PAIRS; ++pair)
 			taubin_smooth(
 				workspace_, 1, positions_, folded_vertices(workspace_, positions_, criterion));
-		bound_drift(measured, UNFOLDING_BOUND, deviations_.largest());
+		bound_drift(measured, UNFOLDING_BOUND, folding_deviation());
 	}
 
 	// Taubin pairs of each vertex: small triangles scatter more, and fold before large ones do.

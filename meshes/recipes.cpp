@@ -25,6 +25,7 @@ const std::vector<Recipe>& recipes()
 		{"part", make_part, 16000},
 		{"thin_plate", make_thin_plate, 4096},
 		{"height_field", make_height_field, 12000},
+		{"scan_lines", make_scan_lines, 9000},
 		of_one_size("non_manifold_edge", make_non_manifold_edge),
 		of_one_size("non_manifold_vertex", make_non_manifold_vertex),
 		of_one_size("degenerate_face", make_degenerate_face),

@@ -186,6 +186,19 @@ bool is_in_field(double x, double y)
 		   !within(0.8, -0.1, 0.2);
 }
 
+constexpr double SHEET_SIDE = 2.0;
+// Samples of a scan line to a step from line to line.
+constexpr double SAMPLES_PER_LINE = 8;
+
+// A rib with sloping flanks, then a bead of half a circle, on a sheet that bends along them.
+double sheet_height(double x, double y)
+{
+	const double rib = std::min({0.3, std::max(0.0, 2 * (x - 0.3)), std::max(0.0, 2 * (0.9 - x))});
+	const double beside = x - 1.5;
+	const double bead = std::sqrt(std::max(0.0, 0.09 - beside * beside));
+	return 0.1 * y * y + rib + bead;
+}
+
 } // namespace
 
 TriangleMesh make_box(const std::array<int, 3>& counts, const Point& lengths)
@@ -387,6 +400,30 @@ TriangleMesh make_height_field(Index faces)
 			kept[k] = number;
 		}
 		mesh.faces.push_back(kept);
+	}
+	return mesh;
+}
+
+TriangleMesh make_scan_lines(Index faces)
+{
+	const int lines = at_least(2, std::sqrt(faces / 2.0 / SAMPLES_PER_LINE));
+	const int steps = at_least(8, faces / 2.0 / lines);
+	TriangleMesh mesh;
+	for (int i = 0; i <= lines; ++i) {
+		for (int j = 0; j <= steps; ++j) {
+			const double x = SHEET_SIDE * j / steps;
+			const double y = SHEET_SIDE * i / lines;
+			mesh.positions.emplace_back(x, y, sheet_height(x, y));
+		}
+	}
+	for (int i = 0; i < lines; ++i) {
+		for (int j = 0; j < steps; ++j) {
+			const Index corner = i * (steps + 1) + j;
+			add_square(
+				{corner, corner + 1, corner + steps + 2, corner + steps + 1},
+				(i + j) % 2 == 0,
+				mesh.faces);
+		}
 	}
 	return mesh;
 }

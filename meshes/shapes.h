@@ -35,4 +35,9 @@ TriangleMesh make_part(Index faces);
 /// ground with a step, open boundary with bites out of it, a hole inside.
 TriangleMesh make_height_field(Index faces);
 
+/// What a line scanner gives of a bent sheet of 2 by 2 with a rib and a bead across its lines: the
+/// samples of a line are eight times as close as the lines, so that all triangles are long and
+/// thin.
+TriangleMesh make_scan_lines(Index faces);
+
 } // namespace orthopoly

@@ -181,6 +181,23 @@ TEST_CASE("the height field is open, has a hole and looks up", "[meshes]")
 		REQUIRE(face_cross_product(field.positions, face).z() > 0);
 }
 
+TEST_CASE("scan lines are of long thin triangles that look up", "[meshes]")
+{
+	const TriangleMesh sheet = find_recipe("scan_lines").make_default();
+	check_sound(sheet);
+	CHECK(sheet.face_count() == Approx(9000).epsilon(0.02));
+	CHECK(euler_characteristic(sheet) == 1);
+	for (const Face& face : sheet.faces)
+		REQUIRE(face_cross_product(sheet.positions, face).z() > 0);
+	// Height over the longest side.
+	Index thin = 0;
+	for (const Face& face : sheet.faces) {
+		const double area = face_cross_product(sheet.positions, face).norm();
+		thin += area < 0.3 * longest_edge_squared(sheet.positions, face) ? 1 : 0;
+	}
+	CHECK(thin > 0.95 * sheet.face_count());
+}
+
 TEST_CASE("each defect is there, and only that one", "[meshes]")
 {
 	const TriangleMesh box = make_box({6, 6, 6}, Point::Constant(1));

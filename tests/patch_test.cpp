@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patch.h"
 
+#include "anisotropy.h"
 #include "recipes.h"
 #include "shapes.h"
 #include "step_fixture.h"
@@ -49,6 +50,40 @@ void check_rings(const Workspace& workspace, int rings)
 				REQUIRE(
 					within(patch.collected(), patch.count_within(ring), patch.mesh_faces()) ==
 					within(expected.faces(), expected.count_within(ring), {}));
+			}
+		}
+	}
+	CHECK(own == workspace.mesh.face_count());
+}
+
+// The same where vertices are one place with others.
+void check_rings_of_places(const Workspace& workspace, const IndexLists& nearby, int rings)
+{
+	Patch patch;
+	Index own = 0;
+	for (Index number = 0; number < Patch::count(workspace); ++number) {
+		patch.build(workspace, number, rings, &nearby);
+		CAPTURE(number);
+		for (Index face = 0; face < patch.own_faces(); ++face, ++own) {
+			patch.collect(face, rings);
+			std::set<Index> expected = {own};
+			for (int ring = 0; ring <= rings; ++ring) {
+				REQUIRE(
+					within(patch.collected(), patch.count_within(ring), patch.mesh_faces()) ==
+					expected);
+				std::set<Index> next = expected;
+				const auto add_faces_around = [&](Index vertex) {
+					for (const Index other : list(workspace.vertex_faces, vertex))
+						next.insert(other);
+				};
+				for (const Index member : expected) {
+					for (const Index vertex : workspace.mesh.faces[at(member)]) {
+						add_faces_around(vertex);
+						for (const Index other : list(nearby, vertex))
+							add_faces_around(other);
+					}
+				}
+				expected = next;
 			}
 		}
 	}
@@ -117,6 +152,18 @@ TEST_CASE("Patches of a mesh that is cut up keep their surroundings", "[patch]")
 	const StepFixture f(make_torus(3 * Patch::OWN_FACES));
 	CHECK(Patch::count(f.workspace) > 2);
 	check_rings(f.workspace, 2);
+}
+
+TEST_CASE("A ring has the faces around all vertices of a place", "[patch]")
+{
+	for (const char* const name : {"scan_lines", "part"}) {
+		CAPTURE(name);
+		// More than a patch, so that places reach from one into the next.
+		const StepFixture f(find_recipe(name).make(Patch::OWN_FACES + 900));
+		const Anisotropy found = find_anisotropy(f.workspace, f.mesh.positions);
+		REQUIRE_FALSE(found.shares.empty());
+		check_rings_of_places(f.workspace, found.nearby, 2);
+	}
 }
 
 TEST_CASE("More faces may meet in a vertex than a patch takes at once", "[patch]")

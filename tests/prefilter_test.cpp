@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "prefilter.h"
 
+#include "measures.h"
 #include "shapes.h"
 #include "step_fixture.h"
 
@@ -317,4 +318,39 @@ TEST_CASE("The prefilter gives the same on any number of threads", "[prefilter][
 		CHECK(same_bits(smoothed(several, 2.5), expected));
 		CHECK(folded_vertices(several.workspace, mesh.positions, {0.3}) == flags);
 	}
+}
+
+TEST_CASE(
+	"Near neighbours first, noise goes and the shape along long triangles stays", "[prefilter]")
+{
+	// A wave five lines long, on lines ten times as far apart as their samples.
+	TriangleMesh truth = make_flat_grid(40);
+	truth.positions = each(truth.positions, [](const Point& p) {
+		return Point(10 * p.x(), p.y(), 0.3 * std::sin(16 * M_PI * p.x()));
+	});
+	const StepFixture f(noisy(truth, 0.1));
+	const std::vector<double> pairs(truth.positions.size(), 6);
+	const std::vector<double> shares(truth.positions.size(), 1);
+	const auto error_after = [&](const NearFirst* near_first) {
+		std::vector<Point> positions = f.mesh.positions;
+		taubin_smooth(f.workspace, pairs, positions, near_first);
+		return measure(with_positions(f.mesh, positions), truth).relative_vertex_error;
+	};
+	const NearFirst near_first = {shares, truth.positions};
+	const double before = measure(f.mesh, truth).relative_vertex_error;
+	CHECK(error_after(&near_first) < 0.6 * before);
+	CHECK(error_after(&near_first) < 0.8 * error_after(nullptr));
+}
+
+TEST_CASE("Neighbours count the same where none is to come first", "[prefilter]")
+{
+	const StepFixture f(noisy(make_height_field(2000), 0.2));
+	const std::vector<double> pairs(f.mesh.positions.size(), 2.5);
+	const std::vector<double> shares(f.mesh.positions.size(), 0);
+	const NearFirst near_first = {shares, f.mesh.positions};
+	std::vector<Point> plain = f.mesh.positions;
+	taubin_smooth(f.workspace, pairs, plain);
+	std::vector<Point> positions = f.mesh.positions;
+	taubin_smooth(f.workspace, pairs, positions, &near_first);
+	CHECK(same_bits(positions, plain));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "adaptive_run.h"
 
+#include "anisotropy.h"
 #include "deviations.h"
 #include "height_filter.h"
 #include "interpolation.h"
@@ -253,7 +254,13 @@ private:
 	{
 		const std::vector<Point>& measured = workspace_.mesh.positions;
 		workspace_.execution.begin_phase(0.1, 0.15, "unfolding faces");
-		taubin_smooth(workspace_, prefilter_pairs(), positions_);
+		anisotropy_ = find_anisotropy(workspace_, measured);
+		const NearFirst near_first = {anisotropy_.shares, anisotropy_.smoothed};
+		taubin_smooth(
+			workspace_,
+			prefilter_pairs(),
+			positions_,
+			anisotropy_.shares.empty() ? nullptr : &near_first);
 		if (plan_.correlation == 1)
 			return;
 		bound_drift(measured, PREFILTER_BOUND, deviations_);
@@ -264,7 +271,8 @@ private:
 		bound_drift(measured, UNFOLDING_BOUND, folding_deviation());
 	}
 
-	// Taubin pairs of each vertex: small triangles scatter more, and fold before large ones do.
+	// Taubin pairs of each vertex: small triangles scatter more, and fold before large ones do; so
+	// do thin ones.
 	// None takes fewer than the mean edge asks for, since outliers make long edges too.
 	std::vector<double> prefilter_pairs() const
 	{
@@ -276,7 +284,14 @@ private:
 			const double sigma = deviations_[i];
 			const double clean = std::max(square - 2 * sigma * sigma, LEAST_CLEAN_SHARE * square);
 			const double local = clean > 0 ? sigma / std::sqrt(clean) : 0.0;
-			pairs[i] = plan_.prefilter_pairs(std::max(plan_.noise * deviations_.factor(i), local));
+			const double least = plan_.noise * deviations_.factor(i);
+			pairs[i] = plan_.prefilter_pairs(std::max(least, local));
+			if (anisotropy_.shares.empty() || anisotropy_.shares[i] == 0)
+				return;
+			const double steady =
+				steady_edge_square_around(workspace_, anisotropy_.smoothed, static_cast<Index>(i));
+			const double thin = plan_.prefilter_pairs(std::max(least, sigma / std::sqrt(steady)));
+			pairs[i] = between(pairs[i], thin, anisotropy_.shares[i]);
 		});
 		return pairs;
 	}
@@ -290,9 +305,19 @@ private:
 		options.largest_ring = plan_.rings.largest;
 		options.loosening = LOOSENING;
 		options.selection = plan_.selection;
-		options.faces_per_structure = plan_.faces_per_structure;
+		options.faces_per_structure = plan_.faces_per_structure * crowding();
+		options.nearby = nearby();
 		return filter_normals(workspace_, field, options);
 	}
+
+	// Vertices that are one place for the structures, or nothing.
+	const IndexLists* nearby() const
+	{
+		return anisotropy_.shares.empty() ? nullptr : &anisotropy_.nearby;
+	}
+
+	// So many times fewer faces need structures of their own where these have more members.
+	int crowding() const { return static_cast<int>(anisotropy_.crowding); }
 
 	// Takes the normals from the measured heights instead, as far as these agree. Returns the paces
 	// of the vertices: #V.
@@ -303,7 +328,8 @@ private:
 		HeightFilterOptions options;
 		options.smallest_ring = plan_.height_rings.smallest;
 		options.largest_ring = plan_.height_rings.largest;
-		options.faces_per_structure = plan_.faces_per_height_structure;
+		options.faces_per_structure = plan_.faces_per_height_structure * crowding();
+		options.nearby = nearby();
 		options.loosening = HEIGHT_LOOSENING;
 		options.sigma = deviations_;
 		options.selection = HEIGHT_SELECTION;
@@ -352,6 +378,7 @@ private:
 	const Workspace& workspace_;
 	const AdaptivePlan& plan_;
 	Deviations deviations_;
+	Anisotropy anisotropy_;
 	std::vector<Point>& positions_;
 };
 

@@ -148,7 +148,7 @@ public:
 
 	void enter(Index number)
 	{
-		patch_.build(workspace_, number, options_.largest_ring);
+		patch_.build(workspace_, number, options_.largest_ring, options_.nearby);
 		guides_.clear();
 		places_.clear();
 		for (const Index i : patch_.mesh_faces()) {

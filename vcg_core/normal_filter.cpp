@@ -129,7 +129,7 @@ public:
 
 	void enter(Index number)
 	{
-		patch_.build(workspace_, number, options_.largest_ring);
+		patch_.build(workspace_, number, options_.largest_ring, options_.nearby);
 		observations_.clear();
 		for (const Index i : patch_.mesh_faces())
 			observations_.push_back(

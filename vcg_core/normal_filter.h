@@ -41,6 +41,8 @@ struct NormalFilterOptions {
 	/// One in so many faces, spread evenly, gets a structure of its own; the others take
 	/// what these vote. 1 or more.
 	int faces_per_structure = 1;
+	/// #V lists of the vertices that are one place with a vertex (see `Anisotropy`), or nothing.
+	const IndexLists* nearby = nullptr;
 	/// Work on four doubles at once, which only a processor with wide lanes can. The same bits.
 	bool wide_lanes = has_wide_lanes();
 

@@ -42,6 +42,14 @@ Index Patch::Numbers::number(Index key, Index next)
 	return entries_[place].number;
 }
 
+Index Patch::Numbers::find(Index key) const
+{
+	std::size_t place = place_of(key, entries_.size());
+	while (entries_[place].key != key && entries_[place].key != NO_KEY)
+		place = (place + 1) & (entries_.size() - 1);
+	return entries_[place].key == key ? entries_[place].number : -1;
+}
+
 void Patch::Numbers::grow()
 {
 	std::vector<Entry> entries(2 * entries_.size(), Entry {NO_KEY, 0});
@@ -61,7 +69,7 @@ Index Patch::count(const Workspace& workspace)
 	return (workspace.mesh.face_count() + OWN_FACES - 1) / OWN_FACES;
 }
 
-void Patch::build(const Workspace& workspace, Index number, int rings)
+void Patch::build(const Workspace& workspace, Index number, int rings, const IndexLists* nearby)
 {
 	mesh_faces_.clear();
 	mesh_vertices_.clear();
@@ -79,15 +87,16 @@ void Patch::build(const Workspace& workspace, Index number, int rings)
 	for (int ring = 0; ring <= rings; ++ring) {
 		const std::size_t end = mesh_faces_.size();
 		for (; done < end; ++done)
-			add_face(workspace, mesh_faces_[done], ring < rings);
+			add_face(workspace, nearby, mesh_faces_[done], ring < rings);
 	}
-	link_faces();
+	link_faces(nearby);
 	stamp_ = 0;
 	face_stamps_.assign(faces_.size() + 1, stamp_);
 	vertex_stamps_.assign(mesh_vertices_.size(), stamp_);
 }
 
-void Patch::add_face(const Workspace& workspace, Index mesh_face, bool with_surroundings)
+void Patch::add_face(
+	const Workspace& workspace, const IndexLists* nearby, Index mesh_face, bool with_surroundings)
 {
 	Face face;
 	for (std::size_t k = 0; k < 3; ++k) {
@@ -99,39 +108,66 @@ void Patch::add_face(const Workspace& workspace, Index mesh_face, bool with_surr
 		mesh_vertices_.push_back(vertex);
 		if (!with_surroundings)
 			continue;
-		const Index* const last = workspace.vertex_faces.end(vertex);
-		for (const Index* it = workspace.vertex_faces.begin(vertex); it != last; ++it) {
-			const Index own = *it - mesh_faces_.front();
-			if (own >= 0 && own < own_faces_)
-				continue;
-			const auto next_face = static_cast<Index>(mesh_faces_.size());
-			if (face_numbers_.number(*it, next_face) == next_face)
-				mesh_faces_.push_back(*it);
-		}
+		add_faces_around(workspace, vertex);
+		if (nearby == nullptr)
+			continue;
+		for (const Index* it = nearby->begin(vertex); it != nearby->end(vertex); ++it)
+			add_faces_around(workspace, *it);
 	}
 	faces_.push_back(face);
 }
 
-void Patch::link_faces()
+void Patch::add_faces_around(const Workspace& workspace, Index mesh_vertex)
+{
+	const Index* const last = workspace.vertex_faces.end(mesh_vertex);
+	for (const Index* it = workspace.vertex_faces.begin(mesh_vertex); it != last; ++it) {
+		const Index own = *it - mesh_faces_.front();
+		if (own >= 0 && own < own_faces_)
+			continue;
+		const auto next = static_cast<Index>(mesh_faces_.size());
+		if (face_numbers_.number(*it, next) == next)
+			mesh_faces_.push_back(*it);
+	}
+}
+
+void Patch::link_faces(const IndexLists* nearby)
 {
 	const IndexLists lists = vertex_faces(static_cast<Index>(mesh_vertices_.size()), faces_);
-	const auto nobody = static_cast<Index>(faces_.size());
 	FaceBlock empty;
-	empty.fill(nobody);
+	empty.fill(static_cast<Index>(faces_.size()));
 	first_blocks_.assign(mesh_vertices_.size(), empty);
 	further_blocks_.clear();
 	further_offsets_.assign(1, 0);
-	for (std::size_t vertex = 0; vertex < mesh_vertices_.size(); ++vertex) {
-		const Index* const begin = lists.begin(static_cast<Index>(vertex));
-		const auto count = at(lists.size(static_cast<Index>(vertex)));
-		std::copy_n(begin, std::min(count, FACES_AT_ONCE), first_blocks_[vertex].begin());
-		for (std::size_t k = FACES_AT_ONCE; k < count; k += FACES_AT_ONCE) {
-			further_blocks_.push_back(empty);
-			std::copy_n(
-				begin + k, std::min(count - k, FACES_AT_ONCE), further_blocks_.back().begin());
+	std::vector<Index> of_place;
+	for (Index vertex = 0; vertex < static_cast<Index>(mesh_vertices_.size()); ++vertex) {
+		const Index mesh_vertex = mesh_vertices_[at(vertex)];
+		if (nearby == nullptr || nearby->size(mesh_vertex) == 0) {
+			link(vertex, lists.begin(vertex), at(lists.size(vertex)));
+			continue;
 		}
-		further_offsets_.push_back(static_cast<Index>(further_blocks_.size()));
+		of_place.assign(lists.begin(vertex), lists.end(vertex));
+		for (const Index* it = nearby->begin(mesh_vertex); it != nearby->end(mesh_vertex); ++it) {
+			const Index other = vertex_numbers_.find(*it);
+			// Beyond the last ring.
+			if (other >= 0)
+				of_place.insert(of_place.end(), lists.begin(other), lists.end(other));
+		}
+		std::sort(of_place.begin(), of_place.end());
+		of_place.erase(std::unique(of_place.begin(), of_place.end()), of_place.end());
+		link(vertex, of_place.data(), of_place.size());
 	}
+}
+
+// Writes down the faces that a ring has from a vertex on; one vertex after the other.
+void Patch::link(Index vertex, const Index* begin, std::size_t count)
+{
+	std::copy_n(begin, std::min(count, FACES_AT_ONCE), first_blocks_[at(vertex)].begin());
+	for (std::size_t k = FACES_AT_ONCE; k < count; k += FACES_AT_ONCE) {
+		further_blocks_.emplace_back();
+		further_blocks_.back().fill(static_cast<Index>(faces_.size()));
+		std::copy_n(begin + k, std::min(count - k, FACES_AT_ONCE), further_blocks_.back().begin());
+	}
+	further_offsets_.push_back(static_cast<Index>(further_blocks_.size()));
 }
 
 void Patch::collect(Index face, int rings)

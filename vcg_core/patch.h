@@ -23,7 +23,11 @@ public:
 	static Index count(const Workspace& workspace);
 
 	/// Takes over patch `number` and as many rings around it. O(number of faces in it).
-	void build(const Workspace& workspace, Index number, int rings);
+	///
+	/// @param nearby #V lists of vertices that are one place with a vertex, so that a ring has the
+	///               faces around all of them; or nothing, where each is a place of its own
+	void
+	build(const Workspace& workspace, Index number, int rings, const IndexLists* nearby = nullptr);
 
 	/// Number of own faces, which come first.
 	Index own_faces() const { return own_faces_; }
@@ -63,6 +67,8 @@ private:
 		void clear();
 		/// The number given to a key; `next` if it is new.
 		Index number(Index key, Index next);
+		/// The number given to a key; -1 if there is none.
+		Index find(Index key) const;
 
 	private:
 		struct Entry {
@@ -75,8 +81,14 @@ private:
 		std::size_t used_ = 0;
 	};
 
-	void add_face(const Workspace& workspace, Index mesh_face, bool with_surroundings);
-	void link_faces();
+	void add_face(
+		const Workspace& workspace,
+		const IndexLists* nearby,
+		Index mesh_face,
+		bool with_surroundings);
+	void add_faces_around(const Workspace& workspace, Index mesh_vertex);
+	void link_faces(const IndexLists* nearby);
+	void link(Index vertex, const Index* begin, std::size_t count);
 	void collect_ring();
 	void meet_vertices();
 

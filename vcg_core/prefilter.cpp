@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "prefilter.h"
 
+#include "interpolation.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
@@ -10,6 +12,9 @@ namespace orthopoly {
 namespace {
 
 constexpr Index GRAIN = 2048;
+
+// No neighbour counts as nearer than this, over the mean edge around, both squared.
+constexpr double LEAST_DISTANCE = 1e-4;
 
 // The way from a vertex on an open boundary to the middle between those next to it there; zero
 // where these are not two.
@@ -35,27 +40,72 @@ Point way_into_outline(
 	return found == 2 ? Point(sum / 2) : Point(Point::Zero());
 }
 
-// Where an umbrella step takes a vertex: to the mean of the neighbours, each weighed by the faces
-// shared.
+/// Ways to the neighbours, weighed and summed up, and the weights.
+struct WeighedWays {
+	Point sum;
+	double weights;
+};
+
+// Each weighed by the faces shared, and nearer ones more.
+WeighedWays ways_near_first(
+	const Workspace& workspace,
+	const NearFirst& near_first,
+	const std::vector<Point>& positions,
+	Index vertex)
+{
+	const double share = near_first.shares[at(vertex)];
+	const Point& from = near_first.positions[at(vertex)];
+	const double square = mean_edge_square_around(workspace, near_first.positions, vertex);
+	WeighedWays ways = {Point::Zero(), 0};
+	const Index* const end = workspace.vertex_faces.end(vertex);
+	for (const Index* it = workspace.vertex_faces.begin(vertex); it != end; ++it) {
+		for (const Index corner : workspace.mesh.faces[at(*it)]) {
+			if (corner == vertex)
+				continue;
+			const double distance = (near_first.positions[at(corner)] - from).squaredNorm();
+			const double near = square / std::max(distance, LEAST_DISTANCE * square);
+			const double weight = between(1, near, share);
+			ways.sum += weight * (positions[at(corner)] - positions[at(vertex)]);
+			ways.weights += weight;
+		}
+	}
+	return ways;
+}
+
+WeighedWays ways_around(
+	const Workspace& workspace,
+	const NearFirst* near_first,
+	const std::vector<Point>& positions,
+	Index vertex)
+{
+	if (near_first != nullptr && near_first->shares[at(vertex)] > 0)
+		return ways_near_first(workspace, *near_first, positions, vertex);
+	return {
+		sum_of_ways_around(workspace, positions, vertex),
+		2.0 * static_cast<double>(workspace.vertex_faces.size(vertex))};
+}
+
+// Where an umbrella step takes a vertex: to the mean of the neighbours.
 Point umbrella(
 	const Workspace& workspace,
+	const NearFirst* near_first,
 	double step,
 	bool turned_over,
 	const std::vector<Point>& positions,
 	Index vertex)
 {
 	const Point& here = positions[at(vertex)];
-	const Index count = workspace.vertex_faces.size(vertex);
-	if (count == 0 || workspace.mesh.is_fixed(vertex))
+	if (workspace.vertex_faces.size(vertex) == 0 || workspace.mesh.is_fixed(vertex))
 		return here;
 	const bool on_boundary = workspace.edges.irregular[at(vertex)] != 0;
-	Point sum = sum_of_ways_around(workspace, positions, vertex);
+	const WeighedWays ways = ways_around(workspace, near_first, positions, vertex);
+	Point sum = ways.sum;
 	// Neighbours on one side only would pull the outline inwards.
 	if (on_boundary) {
 		const Point normal = cross_product_around(workspace, positions, vertex);
 		sum = normal.isZero(0) ? normal : Point(normal.dot(sum) / normal.squaredNorm() * normal);
 	}
-	Point moved = here + step / (2.0 * static_cast<double>(count)) * sum;
+	Point moved = ways.weights > 0 ? Point(here + step / ways.weights * sum) : here;
 	if (on_boundary && turned_over)
 		moved += step * way_into_outline(workspace, positions, vertex);
 	return moved;
@@ -65,6 +115,7 @@ Point umbrella(
 template<class LengthOf>
 void umbrella_step(
 	const Workspace& workspace,
+	const NearFirst* near_first,
 	const std::vector<Index>& vertices,
 	const std::vector<std::uint8_t>& flags,
 	const LengthOf& length_of,
@@ -74,7 +125,8 @@ void umbrella_step(
 	const auto count = static_cast<Index>(vertices.size());
 	workspace.execution.for_each(count, [&](std::size_t k) {
 		const bool turned_over = !flags.empty() && flags[at(vertices[k])] == TURNED_OVER;
-		moved[k] = umbrella(workspace, length_of(k), turned_over, positions, vertices[k]);
+		moved[k] =
+			umbrella(workspace, near_first, length_of(k), turned_over, positions, vertices[k]);
 	});
 	workspace.execution.for_each(
 		count, [&](std::size_t k) { positions[at(vertices[k])] = moved[k]; });
@@ -97,12 +149,20 @@ void taubin_smooth(
 		const double share = std::min(1.0, left);
 		for (const double step : {TAUBIN_SHRINK, TAUBIN_INFLATE})
 			umbrella_step(
-				workspace, vertices, only, [=](std::size_t) { return share * step; }, positions);
+				workspace,
+				nullptr,
+				vertices,
+				only,
+				[=](std::size_t) { return share * step; },
+				positions);
 	}
 }
 
 void taubin_smooth(
-	const Workspace& workspace, const std::vector<double>& pairs, std::vector<Point>& positions)
+	const Workspace& workspace,
+	const std::vector<double>& pairs,
+	std::vector<Point>& positions,
+	const NearFirst* near_first)
 {
 	std::vector<Index> vertices(positions.size());
 	std::iota(vertices.begin(), vertices.end(), 0);
@@ -114,6 +174,7 @@ void taubin_smooth(
 		for (const double step : {TAUBIN_SHRINK, TAUBIN_INFLATE})
 			umbrella_step(
 				workspace,
+				near_first,
 				vertices,
 				{},
 				[&](std::size_t k) { return std::min(1.0, pairs[at(vertices[k])] - done) * step; },

@@ -27,9 +27,24 @@ void taubin_smooth(
 	std::vector<Point>& positions,
 	const std::vector<std::uint8_t>& only = {});
 
+/// How much more near neighbours count than far ones, where triangles are long and thin: smoothing
+/// as far along them as across would take the shape away before the noise.
+struct NearFirst {
+	/// #V, from 0, where all count the same, to 1, where they count by the inverse of their squared
+	/// distance.
+	const std::vector<double>& shares;
+	/// #V, to take the distances from.
+	const std::vector<Point>& positions;
+};
+
 /// The same with a number of pairs of each vertex's own (#V), no outline moving.
+///
+/// @param near_first where neighbours do not count the same; nothing: all do
 void taubin_smooth(
-	const Workspace& workspace, const std::vector<double>& pairs, std::vector<Point>& positions);
+	const Workspace& workspace,
+	const std::vector<double>& pairs,
+	std::vector<Point>& positions,
+	const NearFirst* near_first = nullptr);
 
 /// Which faces `folded_vertices` takes for folded over.
 struct FoldCriterion {

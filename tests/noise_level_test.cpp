@@ -69,6 +69,25 @@ TEST_CASE("The noise is estimated where there is an edge in every ring", "[noise
 	}
 }
 
+TEST_CASE("The noise is estimated on long thin triangles that it is higher than", "[noise_level]")
+{
+	const TriangleMesh lines = find_recipe("scan_lines").make_default();
+	CHECK(estimated(lines) < 0.025);
+	for (const double sigma : {0.05, 0.1, 0.2, 0.3}) {
+		CAPTURE(sigma);
+		const TriangleMesh mesh = noisy(lines, sigma);
+		const double expected = true_level(lines, mesh);
+		CHECK(std::abs(estimated(mesh) - expected) < std::max(0.02, 0.12 * expected));
+	}
+	// A sheet of triangles ten times as long as wide; noise of 0.3 is twice their height.
+	TriangleMesh sheet = make_flat_grid(60);
+	for (Point& p : sheet.positions)
+		p = Point(10 * p.x(), p.y(), 0.4 * std::cos(p.x()));
+	const TriangleMesh mesh = noisy(sheet, 0.3);
+	CHECK(estimated(mesh) > 0.74 * true_level(sheet, mesh));
+	CHECK(estimated(mesh) < 1.1 * true_level(sheet, mesh));
+}
+
 TEST_CASE("Clean meshes read as clean", "[noise_level][slow]")
 {
 	for (const std::string name :

@@ -22,9 +22,6 @@ constexpr double LEAST_CONDITION = 1e-10;
 // Vertices that may move, below which what they tell is less steady than what all of them do.
 constexpr Index FEWEST_MOVING = 500;
 
-// Taubin pairs of the surface below the heights.
-constexpr double SMOOTHING_PAIRS = 4;
-
 } // namespace
 
 void VertexRings::collect(Index vertex, int rings)
@@ -55,7 +52,7 @@ std::vector<Point>
 surface_below_heights(const Workspace& workspace, const std::vector<Point>& positions)
 {
 	std::vector<Point> smooth = positions;
-	taubin_smooth(workspace, SMOOTHING_PAIRS, smooth);
+	taubin_smooth(workspace, SURFACE_PAIRS, smooth);
 	return smooth;
 }
 

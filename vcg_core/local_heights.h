@@ -59,6 +59,9 @@ private:
 	std::vector<VertexRings> rings_;
 };
 
+/// Taubin pairs of the surface that heights are measured from.
+constexpr double SURFACE_PAIRS = 4;
+
 /// The surface that heights are measured from: that of the positions, smoothed until normals of a
 /// mesh with noise of half an edge length are steady. #V.
 std::vector<Point>

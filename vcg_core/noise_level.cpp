@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "noise_level.h"
 
+#include "anisotropy.h"
 #include "interpolation.h"
 #include "lattice.h"
 #include "local_heights.h"
+#include "prefilter.h"
 #include "residual_variances.h"
 #include "sampling.h"
 
@@ -48,6 +50,12 @@ constexpr double LEAST_STEADY = 0.4;
 
 // Each time with the level of the last; from the third on it stays.
 constexpr int STEADY_ROUNDS = 3;
+
+// Where long thin triangles make places this crowded, nearly all of them are lower than strong
+// noise. Heights over a steadier surface miss less of it then: after so many Taubin pairs, near
+// neighbours first, instead of those of `surface_below_heights`.
+constexpr double CROWDED = 1.5;
+constexpr double STEADY_PAIRS = 12;
 
 // What rounding to whole steps leaves: evenly between half a step to either side.
 constexpr double ROUNDING = 0.2887;
@@ -262,14 +270,8 @@ std::vector<ResidualVariance> similar_variances(
 	return variances;
 }
 
-} // namespace
-
-NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions)
-{
-	return estimate_noise_levels(workspace, positions, surface_below_heights(workspace, positions));
-}
-
-NoiseLevels estimate_noise_levels(
+// What heights over that surface tell.
+NoiseLevels levels_over(
 	const Workspace& workspace,
 	const std::vector<Point>& positions,
 	const std::vector<Point>& smooth)
@@ -346,6 +348,41 @@ NoiseLevels estimate_noise_levels(
 		}
 	}
 	return result;
+}
+
+// The surface below the heights, smoothed more where triangles are long and thin.
+std::vector<Point> steadier_surface(
+	const Workspace& workspace, const std::vector<Point>& positions, const Anisotropy& anisotropy)
+{
+	std::vector<double> pairs(positions.size());
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		pairs[i] = between(SURFACE_PAIRS, STEADY_PAIRS, anisotropy.shares[i]);
+	});
+	const NearFirst near_first = {anisotropy.shares, anisotropy.smoothed};
+	std::vector<Point> surface = positions;
+	taubin_smooth(workspace, pairs, surface, &near_first);
+	return surface;
+}
+
+} // namespace
+
+NoiseLevels estimate_noise_levels(const Workspace& workspace, const std::vector<Point>& positions)
+{
+	return estimate_noise_levels(workspace, positions, surface_below_heights(workspace, positions));
+}
+
+NoiseLevels estimate_noise_levels(
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const std::vector<Point>& smooth)
+{
+	NoiseLevels levels = levels_over(workspace, positions, smooth);
+	const Anisotropy anisotropy = find_anisotropy(workspace, positions);
+	if (anisotropy.crowding < CROWDED)
+		return levels;
+	NoiseLevels steadier =
+		levels_over(workspace, positions, steadier_surface(workspace, positions, anisotropy));
+	return steadier.rough > levels.rough ? steadier : levels;
 }
 
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions)

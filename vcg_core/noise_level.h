@@ -17,12 +17,13 @@ constexpr double LEAST_NOISE = 0.025;
 /// Around each of a sample of vertices a cubic height polynomial is fitted to the 2-ring; what it
 /// leaves is noise where the surface is smooth. A low quantile of the residual variances, each
 /// normalised by its degrees of freedom, keeps edges out. Triangles lower than the noise tell too
-/// little and are left out, as far as there are others. Where edges are too close to each other
-/// for that, so that polynomials over the similar faces alone leave less, the level is what these
-/// leave. Where polynomials over more rings leave more, the growth tells how much of it is detail
-/// as small as the triangles, which is no noise. Zero where no vertex has neighbours enough, and
-/// where more pairs of faces lie in a plane than noise would leave. Where the noise differs from
-/// place to place, the root mean square (UnevenNoise). O(#V) time.
+/// little and are left out, as far as there are others; where nearly all are, long and thin ones,
+/// heights over a surface that is smoothed more are asked as well. Where edges are too close to
+/// each other for that, so that polynomials over the similar faces alone leave less, the level is
+/// what these leave. Where polynomials over more rings leave more, the growth tells how much of it
+/// is detail as small as the triangles, which is no noise. Zero where no vertex has neighbours
+/// enough, and where more pairs of faces lie in a plane than noise would leave. Where the noise
+/// differs from place to place, the root mean square (UnevenNoise). O(#V) time.
 double estimate_noise_level(const Workspace& workspace, const std::vector<Point>& positions);
 
 /// The same in several ways, and what kind of noise it is.

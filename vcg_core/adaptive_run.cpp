@@ -271,9 +271,8 @@ private:
 		bound_drift(measured, UNFOLDING_BOUND, folding_deviation());
 	}
 
-	// Taubin pairs of each vertex: small triangles scatter more, and fold before large ones do; so
-	// do thin ones.
-	// None takes fewer than the mean edge asks for, since outliers make long edges too.
+	// Taubin pairs of each vertex: small triangles and thin ones scatter more, and fold before
+	// others do. None takes fewer than the mean edge asks for, since outliers make long edges too.
 	std::vector<double> prefilter_pairs() const
 	{
 		std::vector<double> pairs(positions_.size());

@@ -133,7 +133,7 @@ private:
 	std::vector<Index> next_;
 };
 
-// The vertices of each place, and how many faces they are around.
+// The vertices of each place.
 void find_places(const Workspace& workspace, Anisotropy& anisotropy)
 {
 	std::vector<PlaceFinder> finders(

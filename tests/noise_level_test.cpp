@@ -184,6 +184,17 @@ TEST_CASE("Triangles lower than the noise do not lower the estimate", "[noise_le
 	}
 }
 
+TEST_CASE("Noise as strong as edges are long is estimated", "[noise_level]")
+{
+	for (const TriangleMesh& clean : {make_sphere(20000), make_torus(20000)}) {
+		for (const double sigma : {0.6, 1.0, 1.4}) {
+			CAPTURE(sigma);
+			const TriangleMesh mesh = noisy(clean, sigma);
+			CHECK(estimated(mesh) == Approx(true_level(clean, mesh)).epsilon(0.1));
+		}
+	}
+}
+
 TEST_CASE("A mesh without neighbours enough reads as clean", "[noise_level]")
 {
 	CHECK(estimated(tetrahedron()) == 0);

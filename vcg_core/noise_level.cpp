@@ -57,6 +57,11 @@ constexpr int STEADY_ROUNDS = 3;
 constexpr double CROWDED = 1.5;
 constexpr double STEADY_PAIRS = 12;
 
+// The same for all triangles where the noise is stronger than this. Not where it is weaker: what
+// so much smoothing takes off the surface would count as noise.
+constexpr double STRONG = 0.5;
+constexpr double STEADIEST_PAIRS = 40;
+
 // What rounding to whole steps leaves: evenly between half a step to either side.
 constexpr double ROUNDING = 0.2887;
 
@@ -350,16 +355,24 @@ NoiseLevels levels_over(
 	return result;
 }
 
-// The surface below the heights, smoothed more where triangles are long and thin.
+// The surface below the heights, smoothed more where the noise is strong or triangles are long and
+// thin.
 std::vector<Point> steadier_surface(
-	const Workspace& workspace, const std::vector<Point>& positions, const Anisotropy& anisotropy)
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const Anisotropy& anisotropy,
+	bool strong)
 {
-	std::vector<double> pairs(positions.size());
+	std::vector<double> pairs(positions.size(), strong ? STEADIEST_PAIRS : SURFACE_PAIRS);
+	std::vector<Point> surface = positions;
+	if (anisotropy.shares.empty()) {
+		taubin_smooth(workspace, pairs, surface);
+		return surface;
+	}
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		pairs[i] = between(SURFACE_PAIRS, STEADY_PAIRS, anisotropy.shares[i]);
+		pairs[i] = std::max(pairs[i], between(SURFACE_PAIRS, STEADY_PAIRS, anisotropy.shares[i]));
 	});
 	const NearFirst near_first = {anisotropy.shares, anisotropy.smoothed};
-	std::vector<Point> surface = positions;
 	taubin_smooth(workspace, pairs, surface, &near_first);
 	return surface;
 }
@@ -378,10 +391,11 @@ NoiseLevels estimate_noise_levels(
 {
 	NoiseLevels levels = levels_over(workspace, positions, smooth);
 	const Anisotropy anisotropy = find_anisotropy(workspace, positions);
-	if (anisotropy.crowding < CROWDED)
+	const bool strong = levels.rough > STRONG;
+	if (!strong && anisotropy.crowding < CROWDED)
 		return levels;
-	NoiseLevels steadier =
-		levels_over(workspace, positions, steadier_surface(workspace, positions, anisotropy));
+	const NoiseLevels steadier = levels_over(
+		workspace, positions, steadier_surface(workspace, positions, anisotropy, strong));
 	return steadier.rough > levels.rough ? steadier : levels;
 }
 

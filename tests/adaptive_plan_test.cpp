@@ -15,7 +15,7 @@ TEST_CASE("A plan changes little where the noise does", "[adaptive_plan]")
 {
 	constexpr double STEP = 0.001;
 	AdaptivePlan before = plan_for({}, STEP, WHITE);
-	for (int k = 2; k < 800; ++k) {
+	for (int k = 2; k < 1600; ++k) {
 		const AdaptivePlan plan = plan_for({}, k * STEP, WHITE);
 		CAPTURE(k * STEP);
 		CHECK(plan.cos_threshold == Approx(before.cos_threshold).margin(0.005));
@@ -95,6 +95,30 @@ TEST_CASE("Rings are in order, whatever reach is set", "[adaptive_plan]")
 			CHECK(plan.height_rings.smallest <= plan.height_rings.largest);
 		}
 	}
+}
+
+TEST_CASE("Structures grow with strong noise", "[adaptive_plan]")
+{
+	const AdaptivePlan ordinary = plan_for({}, 0.4, WHITE);
+	const AdaptivePlan strong = plan_for({}, 1.2, WHITE);
+	CHECK(strong.rings.largest >= 2 * ordinary.rings.largest);
+	CHECK(strong.rings.smallest > ordinary.rings.smallest);
+	CHECK(strong.faces_per_structure > ordinary.faces_per_structure);
+	// So may what is prefiltered, at places of more noise than elsewhere too.
+	CHECK(strong.prefilter_pairs(3) > ordinary.prefilter_pairs(3));
+}
+
+TEST_CASE("Heights follow a reach that is set, but for the widest", "[adaptive_plan]")
+{
+	const int by_itself = plan_for({}, 0.2, WHITE).height_rings.largest;
+	const auto planned = [](int ring) {
+		DenoiseOptions options;
+		options.structure_ring = ring;
+		return plan_for(options, 0.2, WHITE).height_rings.largest;
+	};
+	CHECK(planned(1) < planned(2));
+	CHECK(planned(2) < by_itself);
+	CHECK(planned(10) == by_itself);
 }
 
 TEST_CASE("The strength dial halves and doubles", "[adaptive_plan]")

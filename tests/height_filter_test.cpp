@@ -107,6 +107,33 @@ TEST_CASE("A wider structure sees through more noise", "[height_filter]")
 	CHECK(before < 1);
 }
 
+TEST_CASE("Wide structures are taken on plain faces, and not over detail", "[height_filter]")
+{
+	TriangleMesh flat = make_flat_grid(60);
+	TriangleMesh wavy = flat;
+	for (Point& p : wavy.positions)
+		p.z() = 0.01 * std::sin(30 * p.x()) * std::sin(30 * p.y());
+	for (const bool has_detail : {false, true}) {
+		CAPTURE(has_detail);
+		const TriangleMesh& truth = has_detail ? wavy : flat;
+		const FaceGeometry clean = face_geometry(truth.positions, truth.faces);
+		const StepFixture f(noisy(truth, 0.2));
+		const double sigma = 0.2 * mean_edge_length(truth.positions, truth.faces);
+		const auto error = [&](int largest, int faces) {
+			HeightFilterOptions options = options_of(sigma, 1, largest);
+			options.faces_per_structure = faces;
+			return mean_angle(
+				filtered_normals(
+					f.workspace, {clean.normals, clean.centroids, f.mesh.positions}, options),
+				[&](std::size_t i) { return clean.normals[i]; });
+		};
+		for (const int faces : {1, 4}) {
+			CAPTURE(faces);
+			CHECK(error(14, faces) < (has_detail ? 1.05 : 0.6) * error(7, faces));
+		}
+	}
+}
+
 TEST_CASE("On a noisy sphere normals are radial", "[height_filter]")
 {
 	const TriangleMesh sphere = make_sphere(8000);

@@ -18,10 +18,19 @@ constexpr double PREFILTER_FROM = 0.065;
 constexpr double PREFILTER_FULL = 0.095;
 
 // Taubin pairs of the prefilter: a base, and more with the noise over the edges around a vertex, as
-// much as folds ask for. More than the most, and it would reach beyond the structures.
+// much as folds ask for. More than the most, and it would reach beyond the structures; those of
+// strong noise are wider.
 constexpr double PREFILTER_BASE_PAIRS = 0.5;
 constexpr double PREFILTER_PAIRS_PER_NOISE = 5;
 constexpr double MOST_PREFILTER_PAIRS = 8;
+constexpr double MOST_STRONG_PREFILTER_PAIRS = 16;
+
+// Noise from which structures have to grow with it, until the second: on fine meshes, which have
+// so much of it, more rings still see a plain piece of the surface.
+constexpr double STRONG_FROM = 0.45;
+constexpr double STRONG_FULL = 1.1;
+constexpr Rings ORDINARY_RINGS = {3, 5};
+constexpr Rings STRONG_RINGS = {6, 10};
 
 // Iterations, the last of which makes the result, and those before better guides for it. Up to the
 // first noise guides need no improving, and filtering twice would only cost detail; from there to
@@ -47,11 +56,17 @@ constexpr double LARGEST_INCREMENT_NOISE = 0.2;
 constexpr double SELECTION = 9;
 
 // Noise from which structures are wide: height structures of one ring hold too few vertices to be
-// worth fitting, and all have so many members in common that some of the faces having their own is
-// enough; fewer for heights, whose structures are widest.
+// worth fitting, and those of normals have so many members in common that some of the faces having
+// their own is enough; fewer where they are widest.
 constexpr double WIDE_STRUCTURES_NOISE = 0.15;
 constexpr int FACES_PER_WIDE_STRUCTURE = 3;
-constexpr int FACES_PER_HEIGHT_STRUCTURE = 4;
+constexpr int FACES_PER_WIDEST_STRUCTURE = 6;
+
+// Rings of the height structures: more than those of the normals, since heights are steadier the
+// wider they reach. On a flat face twice as many halve the angle that is left.
+constexpr int HEIGHT_RINGS = 14;
+constexpr int FACES_PER_HEIGHT_STRUCTURE = 2;
+constexpr int FACES_PER_WIDE_HEIGHT_STRUCTURE = 4;
 
 // Noise correlated over several edges: more smoothing from one noise to the other, where guides are
 // no longer steady without, structures that may be wide but are of strictly similar directions, and
@@ -103,21 +118,17 @@ double cos_threshold_increment_for(double noise)
 								 (LARGEST_INCREMENT - LEAST_INCREMENT);
 }
 
-// Wider the more there is to average.
-Rings rings_for(double noise)
+// How far noise is from where structures grow with it to where they are widest.
+double strong_share(double noise)
 {
-	if (noise < 0.08)
-		return {2, 3};
-	if (noise < 0.25)
-		return {2, 4};
-	return noise < 0.35 ? Rings {3, 4} : Rings {3, 5};
+	return way_between(STRONG_FROM, STRONG_FULL, noise);
 }
 
 // Taubin pairs of the prefilter for white noise, here in the edge lengths around a vertex.
-double white_pairs_for(double noise)
+double white_pairs_for(double noise, double most)
 {
 	return std::min(
-		MOST_PREFILTER_PAIRS,
+		most,
 		way_between(PREFILTER_FROM, PREFILTER_FULL, noise) *
 			(PREFILTER_BASE_PAIRS + PREFILTER_PAIRS_PER_NOISE * noise));
 }
@@ -136,13 +147,6 @@ double guiding_for(double noise)
 	return way_between(GUIDING_FROM, GUIDING_FULL, noise);
 }
 
-// Rings of the height structures: more than those of the normals, since heights are steadier the
-// wider they reach, and wider the more noise hides the detail there is.
-int height_rings_for(double noise)
-{
-	return noise < 0.16 ? 6 : 7;
-}
-
 int rings_between(int from, int to, double share)
 {
 	return static_cast<int>(std::lround(between(from, to, share)));
@@ -153,6 +157,18 @@ Rings rings_between(const Rings& from, const Rings& to, double share)
 	return {
 		rings_between(from.smallest, to.smallest, share),
 		rings_between(from.largest, to.largest, share)};
+}
+
+// Wider the more there is to average.
+Rings rings_for(double noise)
+{
+	if (noise < 0.08)
+		return {2, 3};
+	if (noise < 0.25)
+		return {2, 4};
+	if (noise < 0.35)
+		return {3, 4};
+	return rings_between(ORDINARY_RINGS, STRONG_RINGS, strong_share(noise));
 }
 
 // Of ratios of variances, hence by their logarithms.
@@ -171,7 +187,9 @@ double AdaptivePlan::cos_threshold_of(int iteration) const
 
 double AdaptivePlan::prefilter_pairs(double local_noise) const
 {
-	return between(white_pairs_for(local_noise), scanner_pairs, correlation);
+	const double most =
+		between(MOST_PREFILTER_PAIRS, MOST_STRONG_PREFILTER_PAIRS, strong_share(noise));
+	return between(white_pairs_for(local_noise, most), scanner_pairs, correlation);
 }
 
 double strength_factor(Strength strength)
@@ -200,10 +218,10 @@ AdaptivePlan plan_for(const DenoiseOptions& options, double noise, const Correla
 		SELECTION, between_ratios(NEAR_SELECTION, FAR_SELECTION, kind.reach), correlation);
 	plan.rings = rings_between(
 		rings_for(noise), rings_between(NEAR_RINGS, FAR_RINGS, kind.reach), correlation);
-	plan.height_rings.largest = height_rings_for(noise);
+	plan.height_rings.largest = HEIGHT_RINGS;
 	if (options.structure_ring) {
-		plan.height_rings.largest =
-			std::max(1, plan.height_rings.largest + *options.structure_ring - plan.rings.largest);
+		const double share = std::min(1.0, double(*options.structure_ring) / plan.rings.largest);
+		plan.height_rings.largest = rings_between(0, HEIGHT_RINGS, share);
 		plan.rings.largest = *options.structure_ring;
 		plan.rings.smallest = std::min(plan.rings.smallest, plan.rings.largest);
 	}
@@ -211,10 +229,12 @@ AdaptivePlan plan_for(const DenoiseOptions& options, double noise, const Correla
 	if (!plan.is_mostly_white())
 		plan.faces_per_structure = FACES_PER_SCANNER_STRUCTURE;
 	else if (wide)
-		plan.faces_per_structure = FACES_PER_WIDE_STRUCTURE;
+		plan.faces_per_structure = static_cast<int>(std::lround(
+			between(FACES_PER_WIDE_STRUCTURE, FACES_PER_WIDEST_STRUCTURE, strong_share(noise))));
+	plan.faces_per_height_structure = FACES_PER_HEIGHT_STRUCTURE;
 	if (wide) {
 		plan.height_rings.smallest = std::min(2, plan.height_rings.largest);
-		plan.faces_per_height_structure = FACES_PER_HEIGHT_STRUCTURE;
+		plan.faces_per_height_structure = FACES_PER_WIDE_HEIGHT_STRUCTURE;
 	}
 	plan.guiding = between(guiding_for(noise), 1.0, correlation);
 	plan.iterations = plan.guiding > 0 ? ITERATIONS : 1;

@@ -40,6 +40,18 @@ constexpr double LOOSE_RISK = 1.2;
 // So many times the members a looser structure has to have to be worth a fit.
 constexpr double WORTH_LOOSENING = 1.1;
 
+// Structures of more rings than these see so much of a surface that what their polynomials miss
+// gets lost in the noise around: their risk is known less well, and counts this many times. Where
+// the surface is as plain as they take it for, a quarter of the risk is left or less, and they are
+// taken.
+constexpr int WELL_KNOWN_RINGS = 7;
+constexpr double FAR_RISK = 3;
+
+// They have so many members in common that one for so many faces is enough. Where another face
+// could have one, its own vote only counts if nobody else's reaches there.
+constexpr int FACES_PER_FAR_STRUCTURE = 12;
+constexpr double WITHOUT_FAR = 0.02;
+
 // Past this many times the least risk so far, growing further has not paid.
 constexpr double HOPELESS = 3;
 
@@ -123,23 +135,20 @@ class Voter {
 	using Fit = ScatteredFit<3, 1, Lanes>;
 
 public:
-	/// @param chosen #F flags of the faces with a structure
+	/// @param chosen     #F flags of the faces with a structure
+	/// @param far_chosen #F flags of those among them whose structure may be wide
 	Voter(
 		const Workspace& workspace,
 		const HeightField& field,
 		const HeightFilterOptions& options,
-		const std::vector<std::uint8_t>& chosen) :
+		const std::vector<std::uint8_t>& chosen,
+		const std::vector<std::uint8_t>& far_chosen) :
 			workspace_(workspace),
-			field_(field), options_(options), chosen_(chosen),
+			field_(field), options_(options), chosen_(chosen), far_chosen_(far_chosen),
 			scale_(1.0 / (workspace.mean_edge_length * options.largest_ring)),
 			variance_(options.sigma.overall() * scale_ * options.sigma.overall() * scale_),
 			best_(options.largest_ring), tried_(options.largest_ring)
 	{
-		for (const int size : SIZES) {
-			if (size >= options.smallest_ring && size < options.largest_ring)
-				sizes_.push_back(size);
-		}
-		sizes_.push_back(options.largest_ring);
 	}
 	Voter(const Voter&) = delete;
 	Voter& operator=(const Voter&) = delete;
@@ -174,13 +183,45 @@ public:
 
 	void vote(Index i, std::vector<Vote>& sums)
 	{
-		if (guides_[at(i)].isZero(0) || chosen_[at(patch_.mesh_faces()[at(i)])] == 0)
+		const Index number = patch_.mesh_faces()[at(i)];
+		if (guides_[at(i)].isZero(0) || chosen_[at(number)] == 0)
 			return;
+		look_around(i, std::min(WELL_KNOWN_RINGS, options_.largest_ring));
+		Polynomial best = find_best(i);
+		// A farther one is hardly the best where the farthest of these is not.
+		if (best.rings == rings_ && rings_ < options_.largest_ring) {
+			if (far_chosen_[at(number)] != 0) {
+				look_around(i, options_.largest_ring);
+				best = find_best(i);
+			}
+			else {
+				best.weight *= WITHOUT_FAR;
+			}
+		}
+		if (best.rings > 0)
+			add_votes(i, best, sums);
+	}
+
+private:
+	void look_around(Index i, int rings)
+	{
+		rings_ = rings;
+		patch_.collect(i, rings);
+		sizes_.clear();
+		for (const int size : SIZES) {
+			if (size >= options_.smallest_ring && size < rings)
+				sizes_.push_back(size);
+		}
+		sizes_.push_back(rings);
+	}
+
+	// The polynomial with the least risk among those of the faces that are looked at.
+	Polynomial find_best(Index i)
+	{
 		Polynomial best;
-		patch_.collect(i, options_.largest_ring);
 		for (const double loosening : {0.0, options_.loosening}) {
 			const std::size_t looser = find_members(i, options_.cos_threshold - loosening);
-			const std::size_t members = tried_.member_ends.back();
+			const std::size_t members = tried_.member_ends[at(rings_)];
 			choose_axes(i);
 			find_vertices();
 			lay_out(i);
@@ -193,11 +234,9 @@ public:
 				static_cast<double>(looser) < WORTH_LOOSENING * static_cast<double>(members))
 				break;
 		}
-		if (best.rings > 0)
-			add_votes(i, best, sums);
+		return best;
 	}
 
-private:
 	// The similar faces around a face; returns how many there would be for a looser structure.
 	std::size_t find_members(Index i, double cos_threshold)
 	{
@@ -210,7 +249,7 @@ private:
 		std::size_t end = 0;
 		std::size_t looser_count = 0;
 		std::size_t k = 0;
-		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
+		for (int ring = 0; ring <= rings_; ++ring) {
 			for (; k < patch_.count_within(ring); ++k) {
 				const Index j = faces[k];
 				const double cosine = guide.dot(guides[j]);
@@ -227,7 +266,7 @@ private:
 	void choose_axes(Index i)
 	{
 		TangentFrame frame(guides_[at(i)]);
-		const int largest = options_.largest_ring;
+		const int largest = rings_;
 		const int rings = TangentFrame::rings_to_observe(
 			std::min(RINGS_FOR_AXES, largest), largest, [&](int ring) {
 				return tried_.member_ends[at(ring)];
@@ -242,7 +281,7 @@ private:
 	// The vertices of the members, each ring filled up to whole groups.
 	void find_vertices()
 	{
-		const int largest = options_.largest_ring;
+		const int largest = rings_;
 		if (tried_.member_ends[at(largest)] == patch_.count_within(largest))
 			take_all_vertices();
 		else
@@ -257,7 +296,7 @@ private:
 		std::vector<Index>& vertices = tried_.vertices;
 		vertices.clear();
 		std::size_t begin = 0;
-		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
+		for (int ring = 0; ring <= rings_; ++ring) {
 			const std::size_t end = patch_.vertex_count_within(ring);
 			vertices.insert(vertices.end(), met.begin() + begin, met.begin() + end);
 			begin = end;
@@ -280,7 +319,7 @@ private:
 		std::size_t end = 0;
 		std::size_t k = 0;
 		int count = 0;
-		for (int ring = 0; ring <= options_.largest_ring; ++ring) {
+		for (int ring = 0; ring <= rings_; ++ring) {
 			const std::size_t begin = end;
 			for (; k < tried_.member_ends[at(ring)]; ++k) {
 				for (const Index vertex : faces[members[k]]) {
@@ -407,7 +446,8 @@ private:
 			}
 		}
 		const double unexplained = excess(moments, free > 0 ? residual / free : variance_);
-		const double risk = slope_variance + BIAS_SHARE * unexplained;
+		const double known = ring > WELL_KNOWN_RINGS ? FAR_RISK : 1;
+		const double risk = known * (slope_variance + BIAS_SHARE * unexplained);
 		if (risk < choice.least_risk)
 			choice = {risk, kept, terms, lane, ring};
 		return risk <= HOPELESS * choice.least_risk;
@@ -473,10 +513,12 @@ private:
 	const HeightField& field_;
 	const HeightFilterOptions& options_;
 	const std::vector<std::uint8_t>& chosen_;
+	const std::vector<std::uint8_t>& far_chosen_;
 	double scale_;
 	/// Of the noise, in scaled units.
 	double variance_;
-	/// Numbers of rings to try.
+	/// Rings that are looked at, and numbers of them to try.
+	int rings_ = 0;
 	std::vector<int> sizes_;
 	Patch patch_;
 	std::vector<Point> guides_;
@@ -514,12 +556,15 @@ template<class AnyVoter>
 std::vector<Vote>
 let_vote(const Workspace& workspace, const HeightField& field, const HeightFilterOptions& options)
 {
-	const std::vector<std::uint8_t> chosen = choose_evenly(
-		workspace, perimeters(workspace, field.positions), options.faces_per_structure);
+	const std::vector<double> sizes = perimeters(workspace, field.positions);
+	const std::vector<std::uint8_t> chosen =
+		choose_evenly(workspace, sizes, options.faces_per_structure);
+	const std::vector<std::uint8_t> far_chosen = choose_evenly(
+		workspace, sizes, std::max(options.faces_per_structure, FACES_PER_FAR_STRUCTURE));
 	// A deque, since voters do not move.
 	std::deque<AnyVoter> voters;
 	for (int worker = 0; worker < workspace.execution.threads(); ++worker)
-		voters.emplace_back(workspace, field, options, chosen);
+		voters.emplace_back(workspace, field, options, chosen, far_chosen);
 	return sum_votes<Vote>(workspace, voters);
 }
 

@@ -27,7 +27,8 @@ struct HeightFilterOptions {
 	/// taken where its risk is clearly less.
 	double loosening = 0;
 	/// A structure reaches over this many rings of faces to that many; each face takes the number
-	/// with the least risk, of a few that grow like powers.
+	/// with the least risk, of a few that grow like powers. Those of more than 7 are tried where 7
+	/// are the best of the others, and at fewer faces.
 	int smallest_ring = 1;
 	int largest_ring = 5;
 	/// One in so many faces, spread evenly, gets a structure of its own; the others take what

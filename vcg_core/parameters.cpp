@@ -248,8 +248,8 @@ const ParameterTable<DenoiseOptions>& denoise_parameters()
 					"structure_ring",
 					"Structure ring R (-1: automatic)",
 					"Rings of faces searched for similar structures, 1 to 10. The adaptive method "
-					"tries smaller ones too and takes the best for each face, and goes some rings "
-					"further for heights; in the paper's method it "
+					"tries smaller ones too and takes the best for each face, and goes further "
+					"for heights, up to 14; in the paper's method it "
 					"may not be less than the guide ring, and automatic is one more. More averages "
 					"over a wider surrounding and takes longer (with the square of it).")))),
 		bind(

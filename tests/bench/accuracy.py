@@ -39,6 +39,9 @@ NOT_RENEWED = 0
 OWN_MESHES = ["cube", "sphere", "torus", "part", "thin_plate", "height_field"]
 # And those of long thin triangles, which the means over the others leave out.
 LONG_MESHES = ["scan_lines"]
+# Those of many small faces, as dense scans have them, whose edges are no longer than the noise.
+FINE_MESHES = ["sphere", "torus", "part"]
+FINE_FACES = 100000
 CGAL_MESHES = ["fandisk", "anchor_dense", "blade", "bones", "elephant", "armadillo", "bear", "knot2"]
 # Kind and sigma in mean edge lengths. Random is Table 2's, normal that of the usual test sets. Uneven
 # is none at one end of the mesh and twice sigma at the other, view along one axis, as scanners have it.
@@ -54,6 +57,7 @@ NOISES = [
 	("simplified", 0.3), ("points", 0.1), ("points", 0.5), ("decimated", 0.5), ("smoothed", 0.3),
 	("rounded", 0.6),
 ]
+FINE_NOISES = [("normal", 0.6), ("normal", 1.0), ("normal", 1.5)]
 # What `orthopoly noise` makes them of.
 DIRECTIONS = {
 	"impulsive": "random", "uneven": "normal", "view": "isotropic", "simplified": "normal",
@@ -128,9 +132,12 @@ def cases_of_folder(folder, seeds):
 
 
 def cases_of_our_own(seeds, say):
+	meshes = tools.OUT / "meshes"
 	groups = {
-		group: tools.generated_meshes(tools.OUT / "meshes", names)
-		for group, names in (("own", OWN_MESHES), ("long-triangles", LONG_MESHES))}
+		"own": tools.generated_meshes(meshes, OWN_MESHES),
+		"long-triangles": tools.generated_meshes(meshes, LONG_MESHES),
+		"fine": tools.generated_meshes(meshes / f"{FINE_FACES}", FINE_MESHES, FINE_FACES),
+	}
 	try:
 		groups["libcgal-demo"] = tools.cgal_meshes(CGAL_MESHES)
 	except (tools.BenchError, StopIteration) as error:
@@ -139,7 +146,7 @@ def cases_of_our_own(seeds, say):
 	for group, paths in groups.items():
 		for path in paths:
 			cases.append(Case(group, path.stem, "clean", str(path), str(path)))
-			for kind, sigma in NOISES:
+			for kind, sigma in FINE_NOISES if group == "fine" else NOISES:
 				if kind in NEW_SURFACES and path.stem in OPEN_MESHES:
 					continue
 				for seed in range(1, max(seeds, 1) + 1):

@@ -41,16 +41,15 @@ constexpr double LOOSE_RISK = 1.2;
 constexpr double WORTH_LOOSENING = 1.1;
 
 // Structures of more rings than these see so much of a surface that what their polynomials miss
-// gets lost in the noise around: their risk is known less well, and counts this many times. Where
-// the surface is as plain as they take it for, a quarter of the risk is left or less, and they are
-// taken.
+// gets lost in the noise around: their risk is known less well, and counts so many times. Where the
+// surface is as plain as they take it for, twice the rings leave a sixteenth of it.
 constexpr int WELL_KNOWN_RINGS = 7;
-constexpr double FAR_RISK = 3;
+constexpr double FAR_RISK = 10;
 
-// They have so many members in common that one for so many faces is enough. Where another face
-// could have one, its own vote only counts if nobody else's reaches there.
+// They have so many members in common that one for so many faces is enough, which votes for the
+// faces around it that could have had one: their own votes are those of narrower structures.
 constexpr int FACES_PER_FAR_STRUCTURE = 12;
-constexpr double WITHOUT_FAR = 0.02;
+constexpr double FAR_WEIGHT = 20;
 
 // Past this many times the least risk so far, growing further has not paid.
 constexpr double HOPELESS = 3;
@@ -189,14 +188,12 @@ public:
 		look_around(i, std::min(WELL_KNOWN_RINGS, options_.largest_ring));
 		Polynomial best = find_best(i);
 		// A farther one is hardly the best where the farthest of these is not.
-		if (best.rings == rings_ && rings_ < options_.largest_ring) {
-			if (far_chosen_[at(number)] != 0) {
-				look_around(i, options_.largest_ring);
-				best = find_best(i);
-			}
-			else {
-				best.weight *= WITHOUT_FAR;
-			}
+		if (best.rings == rings_ && rings_ < options_.largest_ring &&
+			far_chosen_[at(number)] != 0) {
+			look_around(i, options_.largest_ring);
+			best = find_best(i);
+			if (best.rings > WELL_KNOWN_RINGS)
+				best.weight *= FAR_WEIGHT;
 		}
 		if (best.rings > 0)
 			add_votes(i, best, sums);

@@ -63,7 +63,8 @@ constexpr int FACES_PER_WIDE_STRUCTURE = 3;
 constexpr int FACES_PER_WIDEST_STRUCTURE = 6;
 
 // Rings of the height structures: more than those of the normals, since heights are steadier the
-// wider they reach. On a flat face twice as many halve the angle that is left.
+// wider they reach. Fourteen rings instead of seven leave half the angle of a flat face at noise of
+// 0.1, two thirds at 0.3.
 constexpr int HEIGHT_RINGS = 14;
 constexpr int FACES_PER_HEIGHT_STRUCTURE = 2;
 constexpr int FACES_PER_WIDE_HEIGHT_STRUCTURE = 4;

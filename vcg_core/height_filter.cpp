@@ -62,7 +62,7 @@ constexpr int RINGS_FOR_AXES = 2;
 
 // Numbers of rings tried, as far as the options allow them, beside the largest they allow: each has
 // about twice the vertices of the one before.
-constexpr std::array<int, 7> SIZES = {1, 2, 3, 5, 7, 10, 14};
+constexpr std::array<int, 5> SIZES = {1, 2, 3, 5, WELL_KNOWN_RINGS};
 
 /// Vertices side by side.
 template<class Lanes>
@@ -101,7 +101,6 @@ using Vote = Eigen::Vector4d;
 /// The polynomial that a structure votes with.
 struct Polynomial {
 	ScatteredFit<3, 1>::Coefficients coefficients;
-	double weight = 0;
 	double risk = std::numeric_limits<double>::infinity();
 	/// 0: there is none.
 	int rings = 0;
@@ -148,6 +147,15 @@ public:
 			variance_(options.sigma.overall() * scale_ * options.sigma.overall() * scale_),
 			best_(options.largest_ring), tried_(options.largest_ring)
 	{
+		const int near =
+			std::min(std::max(options.smallest_ring, WELL_KNOWN_RINGS), options.largest_ring);
+		for (const int size : SIZES) {
+			if (size >= options.smallest_ring && size < near)
+				sizes_.push_back(size);
+		}
+		sizes_.push_back(near);
+		if (near < options.largest_ring)
+			far_sizes_.push_back(options.largest_ring);
 	}
 	Voter(const Voter&) = delete;
 	Voter& operator=(const Voter&) = delete;
@@ -185,57 +193,47 @@ public:
 		const Index number = patch_.mesh_faces()[at(i)];
 		if (guides_[at(i)].isZero(0) || chosen_[at(number)] == 0)
 			return;
-		look_around(i, std::min(WELL_KNOWN_RINGS, options_.largest_ring));
-		Polynomial best = find_best(i);
+		Polynomial best;
+		find_better(i, sizes_, 1, best);
+		double weight = 1;
 		// A farther one is hardly the best where the farthest of these is not.
-		if (best.rings == rings_ && rings_ < options_.largest_ring &&
-			far_chosen_[at(number)] != 0) {
-			look_around(i, options_.largest_ring);
-			best = find_best(i);
-			if (best.rings > WELL_KNOWN_RINGS)
-				best.weight *= FAR_WEIGHT;
-		}
+		if (best.rings == sizes_.back() && !far_sizes_.empty() && far_chosen_[at(number)] != 0 &&
+			find_better(i, far_sizes_, FAR_RISK, best))
+			weight = FAR_WEIGHT;
 		if (best.rings > 0)
-			add_votes(i, best, sums);
+			add_votes(i, best, weight / (best.risk + LEAST_VARIANCE), sums);
 	}
 
 private:
-	void look_around(Index i, int rings)
+	// Takes over the polynomial with the least risk of the structures of these sizes around a face,
+	// their risk counted so many times, where it is less than the best one's so far.
+	bool find_better(Index i, const std::vector<int>& sizes, double risk_factor, Polynomial& best)
 	{
-		rings_ = rings;
+		const int rings = sizes.back();
 		patch_.collect(i, rings);
-		sizes_.clear();
-		for (const int size : SIZES) {
-			if (size >= options_.smallest_ring && size < rings)
-				sizes_.push_back(size);
-		}
-		sizes_.push_back(rings);
-	}
-
-	// The polynomial with the least risk among those of the faces that are looked at.
-	Polynomial find_best(Index i)
-	{
-		Polynomial best;
+		bool found = false;
 		for (const double loosening : {0.0, options_.loosening}) {
-			const std::size_t looser = find_members(i, options_.cos_threshold - loosening);
-			const std::size_t members = tried_.member_ends[at(rings_)];
-			choose_axes(i);
-			find_vertices();
+			const std::size_t looser = find_members(i, options_.cos_threshold - loosening, rings);
+			const std::size_t members = tried_.member_ends[at(rings)];
+			choose_axes(i, rings);
+			find_vertices(rings);
 			lay_out(i);
-			const Polynomial tried = fit();
-			if (loosening == 0 || LOOSE_RISK * tried.risk < best.risk) {
+			Polynomial tried = fit(sizes);
+			tried.risk *= risk_factor;
+			if ((loosening == 0 ? 1 : LOOSE_RISK) * tried.risk < best.risk) {
 				best = tried;
 				std::swap(tried_, best_);
+				found = true;
 			}
 			if (loosening > 0 ||
 				static_cast<double>(looser) < WORTH_LOOSENING * static_cast<double>(members))
 				break;
 		}
-		return best;
+		return found;
 	}
 
 	// The similar faces around a face; returns how many there would be for a looser structure.
-	std::size_t find_members(Index i, double cos_threshold)
+	std::size_t find_members(Index i, double cos_threshold, int rings)
 	{
 		const double looser = cos_threshold - options_.loosening;
 		const Point guide = guides_[at(i)];
@@ -246,7 +244,7 @@ private:
 		std::size_t end = 0;
 		std::size_t looser_count = 0;
 		std::size_t k = 0;
-		for (int ring = 0; ring <= rings_; ++ring) {
+		for (int ring = 0; ring <= rings; ++ring) {
 			for (; k < patch_.count_within(ring); ++k) {
 				const Index j = faces[k];
 				const double cosine = guide.dot(guides[j]);
@@ -260,15 +258,14 @@ private:
 	}
 
 	// Axes across the guide, turned to where the guides around it change most.
-	void choose_axes(Index i)
+	void choose_axes(Index i, int rings)
 	{
 		TangentFrame frame(guides_[at(i)]);
-		const int largest = rings_;
-		const int rings = TangentFrame::rings_to_observe(
-			std::min(RINGS_FOR_AXES, largest), largest, [&](int ring) {
+		const int observed =
+			TangentFrame::rings_to_observe(std::min(RINGS_FOR_AXES, rings), rings, [&](int ring) {
 				return tried_.member_ends[at(ring)];
 			});
-		for (std::size_t k = 0; k < tried_.member_ends[at(rings)]; ++k)
+		for (std::size_t k = 0; k < tried_.member_ends[at(observed)]; ++k)
 			frame.observe(guides_[at(tried_.members[k])], 1.0);
 		frame.align();
 		tried_.tangent = frame.tangent();
@@ -276,24 +273,23 @@ private:
 	}
 
 	// The vertices of the members, each ring filled up to whole groups.
-	void find_vertices()
+	void find_vertices(int rings)
 	{
-		const int largest = rings_;
-		if (tried_.member_ends[at(largest)] == patch_.count_within(largest))
-			take_all_vertices();
+		if (tried_.member_ends[at(rings)] == patch_.count_within(rings))
+			take_all_vertices(rings);
 		else
-			take_vertices_of_members();
+			take_vertices_of_members(rings);
 	}
 
 	// Where all faces are members, they have been met already.
-	void take_all_vertices()
+	void take_all_vertices(int rings)
 	{
 		const IndexSpan met = patch_.collect_vertices();
 		const auto nobody = static_cast<Index>(positions_.size()) - 1;
 		std::vector<Index>& vertices = tried_.vertices;
 		vertices.clear();
 		std::size_t begin = 0;
-		for (int ring = 0; ring <= rings_; ++ring) {
+		for (int ring = 0; ring <= rings; ++ring) {
 			const std::size_t end = patch_.vertex_count_within(ring);
 			vertices.insert(vertices.end(), met.begin() + begin, met.begin() + end);
 			begin = end;
@@ -304,7 +300,7 @@ private:
 		}
 	}
 
-	void take_vertices_of_members()
+	void take_vertices_of_members(int rings)
 	{
 		tried_.vertices.resize(3 * tried_.members.size() + tried_.vertex_group_ends.size() * LANES);
 		const auto nobody = static_cast<Index>(positions_.size()) - 1;
@@ -316,7 +312,7 @@ private:
 		std::size_t end = 0;
 		std::size_t k = 0;
 		int count = 0;
-		for (int ring = 0; ring <= rings_; ++ring) {
+		for (int ring = 0; ring <= rings; ++ring) {
 			const std::size_t begin = end;
 			for (; k < tried_.member_ends[at(ring)]; ++k) {
 				for (const Index vertex : faces[members[k]]) {
@@ -353,33 +349,32 @@ private:
 		}
 	}
 
-	// Fits the structure that is tried.
-	Polynomial fit() const
+	// The polynomial with the least risk of those sizes of the structure that is tried.
+	Polynomial fit(const std::vector<int>& sizes) const
 	{
 		Polynomial best;
 		Choice choice;
 		typename Fit::Moments sums;
 		std::size_t group = 0;
-		for (std::size_t first = 0; first < sizes_.size(); first += LANES) {
-			const std::size_t end = std::min(first + LANES, sizes_.size());
+		for (std::size_t first = 0; first < sizes.size(); first += LANES) {
+			const std::size_t end = std::min(first + LANES, sizes.size());
 			std::array<ScatteredMoments<3, 1>, LANES> of_sizes;
 			for (std::size_t k = first; k < end; ++k) {
-				for (; group < tried_.vertex_group_ends[at(sizes_[k])]; ++group) {
+				for (; group < tried_.vertex_group_ends[at(sizes[k])]; ++group) {
 					const VertexGroup<Lanes>& vertices = tried_.groups[group];
 					sums.add(vertices.x, vertices.y, {vertices.height}, vertices.weight);
 				}
-				add_up(sums, tried_.vertex_counts[at(sizes_[k])], of_sizes[k - first]);
+				add_up(sums, tried_.vertex_counts[at(sizes[k])], of_sizes[k - first]);
 			}
 			const Fit fitted(side_by_side<Lanes>(of_sizes));
 			const Slopes slopes(fitted);
 			choice.rings = 0;
 			bool goes_on = true;
 			for (std::size_t k = first; k < end && goes_on; ++k)
-				goes_on = judge(of_sizes[k - first], fitted, slopes, k - first, sizes_[k], choice);
+				goes_on = judge(of_sizes[k - first], fitted, slopes, k - first, sizes[k], choice);
 			if (choice.rings > 0)
 				best = {
 					fitted.polynomial(choice.kept, choice.terms, choice.lane),
-					1 / (choice.least_risk + LEAST_VARIANCE),
 					choice.least_risk,
 					choice.rings};
 			if (!goes_on)
@@ -443,8 +438,7 @@ private:
 			}
 		}
 		const double unexplained = excess(moments, free > 0 ? residual / free : variance_);
-		const double known = ring > WELL_KNOWN_RINGS ? FAR_RISK : 1;
-		const double risk = known * (slope_variance + BIAS_SHARE * unexplained);
+		const double risk = slope_variance + BIAS_SHARE * unexplained;
 		if (risk < choice.least_risk)
 			choice = {risk, kept, terms, lane, ring};
 		return risk <= HOPELESS * choice.least_risk;
@@ -459,7 +453,7 @@ private:
 		return std::max(0.0, residual_variance - slack * variance_) / mean_square_radius;
 	}
 
-	void add_votes(Index i, const Polynomial& polynomial, std::vector<Vote>& sums)
+	void add_votes(Index i, const Polynomial& polynomial, double weight, std::vector<Vote>& sums)
 	{
 		const Point center = places_[at(i)];
 		const Point guide = guides_[at(i)];
@@ -494,15 +488,15 @@ private:
 			const Lanes slope_y =
 				c[2] + (c[4] + c[7] * x + two * c[8] * y) * x + (two * c[5] + three * c[9] * y) * y;
 			// The guide and the axes are unit vectors across each other.
-			const Lanes factor = Lanes(polynomial.weight) /
-								 square_root(Lanes(1) + slope_x * slope_x + slope_y * slope_y);
+			const Lanes factor =
+				Lanes(weight) / square_root(Lanes(1) + slope_x * slope_x + slope_y * slope_y);
 			std::array<Lanes, 3> vote;
 			for (std::size_t component = 0; component < 3; ++component)
 				vote[component] = factor * (axes[0][component] - slope_x * axes[1][component] -
 											slope_y * axes[2][component]);
 			for (std::size_t lane = 0; lane < LANES; ++lane)
 				sums[at(best_.members[k + lane])] +=
-					Vote(vote[0][lane], vote[1][lane], vote[2][lane], polynomial.weight);
+					Vote(vote[0][lane], vote[1][lane], vote[2][lane], weight);
 		}
 	}
 
@@ -514,9 +508,9 @@ private:
 	double scale_;
 	/// Of the noise, in scaled units.
 	double variance_;
-	/// Rings that are looked at, and numbers of them to try.
-	int rings_ = 0;
+	/// Numbers of rings to try, and the one more that is tried beyond them, if any.
 	std::vector<int> sizes_;
+	std::vector<int> far_sizes_;
 	Patch patch_;
 	std::vector<Point> guides_;
 	std::vector<Point> places_;

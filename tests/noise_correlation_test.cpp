@@ -217,7 +217,7 @@ TEST_CASE(
 			CAPTURE(found.first_rise, found.further_rise, found.middle_level);
 			CHECK(found.first_rise > 0.65);
 			CHECK(found.further_rise < 0.7);
-			CHECK(found.middle_level == Approx(sigma).epsilon(0.25));
+			CHECK(found.deviation() == Approx(sigma).epsilon(0.15));
 			CHECK(found.certainty_by_rise() > 0.8);
 			CHECK(measured(clean).certainty_by_rise() == 0);
 		}
@@ -239,6 +239,7 @@ TEST_CASE("Size, place, turn and order do not matter to the kind of noise", "[no
 		CHECK(found.growth == Approx(here.growth).epsilon(1e-9));
 		CHECK(found.unevenness == Approx(here.unevenness).epsilon(1e-9));
 		CHECK(found.level == Approx(here.level).epsilon(1e-9));
+		CHECK(found.deviation() == Approx(here.deviation()).epsilon(1e-7));
 		CHECK(found.certainty() == Approx(here.certainty()).epsilon(1e-6));
 		CHECK(found.first_rise == Approx(here.first_rise).epsilon(1e-7));
 		CHECK(found.further_rise == Approx(here.further_rise).epsilon(1e-7));

@@ -70,6 +70,7 @@ std::optional<AdaptiveRun> run_at(
 	DenoiseResult& result,
 	std::vector<Point>& positions)
 {
+	level *= noise.seen;
 	const std::vector<double>& factors = noise.uneven.factors;
 	AdaptivePlan plan = plan_for(options, level * factor_planned_for(factors), noise.correlation);
 	plan.noise = level;

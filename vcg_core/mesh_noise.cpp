@@ -29,6 +29,7 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 	MeshNoise noise;
 	double by_rise = 0;
 	double narrow_level = 0;
+	double deviation = 0;
 	if (options.noise_type != NoiseType::White) {
 		const bool scanner = options.noise_type == NoiseType::Scanner;
 		const NoiseCorrelation found =
@@ -36,8 +37,10 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 		noise.correlation = {scanner ? 1 : found.certainty(), found.reach()};
 		if (levels.rounding > 0 && !scanner)
 			noise.correlation.share = way_between(FINE_ROUNDING, COARSE_ROUNDING, levels.rounding);
-		else
+		else {
 			by_rise = (1 - levels.uneven.certainty) * found.certainty_by_rise();
+			deviation = found.deviation();
+		}
 		narrow_level = found.narrow_level;
 	}
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
@@ -58,9 +61,13 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 		noise.correlation.share > 0 ? std::max(levels.rough, narrow_level) : levels.rough;
 	// Noise that goes together over several edges grows with the rings as detail does.
 	const double white = noise.outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;
-	const double even = between(white, rough, noise.correlation.share);
-	const double level = between(even, noise.uneven.level, noise.uneven.certainty);
-	noise.level = between(level, noise.outliers.level, noise.outliers.share);
+	const auto level_for = [&](double correlated) {
+		const double even = between(white, correlated, noise.correlation.share);
+		const double level = between(even, noise.uneven.level, noise.uneven.certainty);
+		return between(level, noise.outliers.level, noise.outliers.share);
+	};
+	noise.level = level_for(std::max(rough, deviation));
+	noise.seen = noise.level > 0 ? level_for(rough) / noise.level : 1;
 	noise.most = std::max(rough, noise.uneven.level);
 	noise.rounding = levels.rounding;
 	return noise;

@@ -57,6 +57,9 @@ struct NoiseCorrelation {
 	double certainty_by_rise() const;
 	/// From 0 to 1: how surely the mesh was extracted from a volume, whatever its noise.
 	double is_of_voxels() const;
+	/// Of the noise along the normals, in mean edge lengths, where it is correlated: more than any
+	/// of the polynomials leaves, which follow a part of it. 0 where not measured.
+	double deviation() const;
 	/// How far the noise goes together, from 0 (over an edge or two) to 1 (over many).
 	double reach() const;
 };

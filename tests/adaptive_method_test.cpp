@@ -346,7 +346,7 @@ TEST_CASE("Scanner noise is for the scanner mode", "[adaptive_method][slow]")
 	for (const std::string name : {"sphere", "cube"}) {
 		CAPTURE(name);
 		const TriangleMesh truth = find_recipe(name).make(8000);
-		const TriangleMesh mesh = with_correlated_noise(truth, 0.3);
+		const TriangleMesh mesh = with_correlated_noise(truth, 0.3, 8);
 		const double before = measure(mesh, truth).mean_angle;
 		const double white = errors_of(mesh, truth).mean_angle;
 		DenoiseOptions options;
@@ -361,6 +361,24 @@ TEST_CASE("Scanner noise is for the scanner mode", "[adaptive_method][slow]")
 		CHECK(result.resolved.noise_type == NoiseType::Scanner);
 		// Noise of so many edges looks like detail.
 		CHECK(denoised(mesh).resolved.noise_type == NoiseType::White);
+	}
+}
+
+TEST_CASE("Noise that was smoothed more is found and goes", "[adaptive_method][slow]")
+{
+	for (const std::string name : {"sphere", "cube", "thin_plate"}) {
+		CAPTURE(name);
+		const TriangleMesh truth = find_recipe(name).make(16000);
+		const TriangleMesh mesh = with_correlated_noise(truth, 0.12, 3);
+		const DenoiseResult result = denoised(mesh);
+		CHECK(result.resolved.noise_type == NoiseType::Scanner);
+		CHECK(result.estimated_noise == Approx(0.12).epsilon(0.25));
+		const ErrorMeasures before = measure(mesh, truth);
+		const ErrorMeasures after = measure(with_positions(mesh, result.positions), truth);
+		CAPTURE(before.mean_angle, after.mean_angle, after.relative_vertex_error);
+		CHECK(after.mean_angle < 0.3 * before.mean_angle);
+		CHECK(after.relative_vertex_error < 0.6 * before.relative_vertex_error);
+		CHECK(after.folded_faces == 0);
 	}
 }
 

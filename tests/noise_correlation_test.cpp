@@ -229,6 +229,23 @@ TEST_CASE(
 	}
 }
 
+TEST_CASE("Noise that was smoothed more rises steeply and bends", "[noise_correlation][slow]")
+{
+	for (const std::string name : {"cube", "sphere", "thin_plate"}) {
+		const TriangleMesh clean = find_recipe(name).make(16000);
+		CHECK(measured(clean).certainty_by_rise() == 0);
+		for (const int steps : {2, 3, 4}) {
+			CAPTURE(name, steps);
+			const NoiseCorrelation found = measured(with_correlated_noise(clean, 0.12, steps));
+			CAPTURE(found.first_rise, found.further_rise, found.narrow_spread);
+			CHECK(found.first_rise - found.further_rise > 0.6);
+			CHECK(found.narrow_spread < 1.18);
+			CHECK(found.certainty_by_rise() > 0.5);
+			CHECK(found.deviation() == Approx(0.12).epsilon(0.35));
+		}
+	}
+}
+
 TEST_CASE("Size, place, turn and order do not matter to the kind of noise", "[noise_correlation]")
 {
 	const TriangleMesh mesh = with_correlated_noise(depth_image(), 0.3, 2);
@@ -243,6 +260,7 @@ TEST_CASE("Size, place, turn and order do not matter to the kind of noise", "[no
 		CHECK(found.certainty() == Approx(here.certainty()).epsilon(1e-6));
 		CHECK(found.first_rise == Approx(here.first_rise).epsilon(1e-7));
 		CHECK(found.further_rise == Approx(here.further_rise).epsilon(1e-7));
+		CHECK(found.narrow_spread == Approx(here.narrow_spread).epsilon(1e-7));
 	};
 	for (const double scale : {1e-3, 1e3}) {
 		const Eigen::Matrix3d rotation = some_rotation();

@@ -38,6 +38,9 @@ struct NoiseCorrelation {
 	/// where not measured.
 	double first_rise = 0;
 	double further_rise = 0;
+	/// Residual deviation of narrow polynomials in the flattest fifth of the places over that in
+	/// the flattest tenth. 0 where not measured.
+	double narrow_spread = 0;
 	/// Residual deviation of wide polynomials at an ordinary place over that in the flattest ones:
 	/// 1 where the noise is all there is. 0 where not measured.
 	double unevenness = 0;

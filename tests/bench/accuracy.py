@@ -48,20 +48,21 @@ CGAL_MESHES = ["fandisk", "anchor_dense", "blade", "bones", "elephant", "armadil
 # Volume is in the values of one that the mesh is extracted from anew, sigma in its cubes. Simplified is
 # on four times the faces, in their mean edge lengths, and simplified to the mesh's own number by MeshLab.
 # Points is on points of the surface, in the mean distance between them, that MeshLab reconstructs it from;
-# decimated the same with every other face of the reconstruction. Smoothed is normal, and smoothed a little.
+# decimated the same with every other face of the reconstruction. Smoothed is normal, and smoothed a little;
+# rippled the same, and smoothed more, which leaves ripples.
 # Rounded has no draws: sigma is the step that coordinates are rounded to.
 NOISES = [
 	("normal", 0.1), ("normal", 0.2), ("normal", 0.3), ("normal", 0.6),
 	("random", 0.2), ("random", 0.4), ("isotropic", 0.3), ("impulsive", 0.5),
 	("uneven", 0.2), ("view", 0.3), ("volume", 0.3),
 	("simplified", 0.3), ("points", 0.1), ("points", 0.5), ("decimated", 0.5), ("smoothed", 0.3),
-	("rounded", 0.6),
+	("rippled", 0.3), ("rounded", 0.6),
 ]
 FINE_NOISES = [("normal", 0.6), ("normal", 1.0), ("normal", 1.5)]
 # What `orthopoly noise` makes them of.
 DIRECTIONS = {
 	"impulsive": "random", "uneven": "normal", "view": "isotropic", "simplified": "normal",
-	"smoothed": "normal",
+	"smoothed": "normal", "rippled": "normal",
 }
 # Cubes of a volume along the longest side of the mesh, those around it, and how far from the surface
 # it has distances; open meshes have no inside to measure them from.
@@ -72,7 +73,7 @@ OPEN_MESHES = ["height_field", "scan_lines", "blade"]
 # The least number of points that a surface is reconstructed from.
 FEWEST_POINTS = 20000
 # Steps of MeshLab's Taubin smoothing that noise was smoothed by.
-SMOOTHING_STEPS = 3
+SMOOTHING_STEPS = {"smoothed": 3, "rippled": 10}
 # The share of the vertices that impulsive noise moves.
 IMPULSIVE_SHARE = 0.2
 
@@ -344,9 +345,10 @@ def make_noise(case, target):
 	tools.orthopoly("noise", case.truth, target, "--sigma", case.sigma, *kind)
 	if case.kind in ("uneven", "view"):
 		keep_part_of_noise(case, target)
-	elif case.kind == "smoothed":
+	elif case.kind in SMOOTHING_STEPS:
 		apply_meshlab(
-			target, target, "apply_coord_taubin_smoothing", stepsmoothnum=SMOOTHING_STEPS)
+			target, target, "apply_coord_taubin_smoothing",
+			stepsmoothnum=SMOOTHING_STEPS[case.kind])
 
 
 def figures(report):

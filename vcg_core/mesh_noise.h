@@ -25,10 +25,10 @@ struct MeshNoise {
 	OutlierRepair outliers;
 	/// In mean edge lengths, and what no noise and hardly any detail of the mesh is beyond.
 	double level = 0;
+	double most = 0;
 	/// The part of the level that polynomials over few rings leave and hence the method has to do
 	/// with: less than 1 where they follow noise that goes together over several edges.
 	double seen = 1;
-	double most = 0;
 	/// What is certain to be noise of it: rounded coordinates.
 	double rounding = 0;
 };

@@ -24,9 +24,10 @@ std::vector<Point> smoothed(const TriangleMesh& mesh, double pairs)
 
 /// What a method makes of a mesh, and of it with the probe.
 struct Probed {
-	Probed(const TriangleMesh& mesh, double pairs, double noise = NOISE) :
+	/// @param factors of the noise at the vertices, which outlive this, or none
+	Probed(const TriangleMesh& mesh, double pairs, const std::vector<double>& factors = {}) :
 			f(mesh), positions(smoothed(mesh, pairs)),
-			probe(f.workspace, noise * f.workspace.mean_edge_length, positions),
+			probe(f.workspace, {NOISE * f.workspace.mean_edge_length, factors}, positions),
 			detail(f.workspace, probe, positions),
 			with_probe(with_positions(mesh, probe.with_probe())),
 			share(followed(smoothed(with_probe, pairs)))
@@ -103,6 +104,36 @@ TEST_CASE("Broad detail is given back, noise is not", "[broad_detail]")
 		CHECK(probed.detail.certainty(probed.share) == 0);
 		CHECK(same_bits(probed.given_back(), probed.positions));
 	}
+}
+
+TEST_CASE("Broad detail is given back where noise differs from place to place", "[broad_detail]")
+{
+	const auto ramp = [](const Point& p) { return 1 + 0.8 * p.x(); };
+	const auto factors_on = [&](const TriangleMesh& truth) {
+		std::vector<double> factors;
+		for (const Point& position : truth.positions)
+			factors.push_back(ramp(position));
+		return factors;
+	};
+	const TriangleMesh bumpy = bumpy_sphere(12000, 10, 0.8);
+	const std::vector<double> factors = factors_on(bumpy);
+	const Probed probed(unevenly_noisy(bumpy, NOISE, ramp), 320, factors);
+	for (std::size_t i = 0; i < factors.size(); ++i) {
+		const double distance =
+			(probed.with_probe.positions[i] - probed.f.mesh.positions[i]).norm();
+		const double noise = factors[i] * NOISE * probed.f.workspace.mean_edge_length;
+		REQUIRE(distance == Approx(0.5 * noise));
+	}
+	CHECK(
+		probed.detail.share_followed(probed.probe.responses(
+			probed.f.mesh.positions, probed.with_probe.positions)) == Approx(1).margin(1e-3));
+	const double before = vertex_error(bumpy, probed.positions);
+	CHECK(vertex_error(bumpy, probed.given_back()) < 0.75 * before);
+	// What is but higher than thought by a seventh is no detail, if levels are such as differ.
+	const TriangleMesh flat = make_flat_grid(80);
+	const std::vector<double> same(flat.positions.size(), 1);
+	const Probed higher(noisy(flat, 1.14 * NOISE), 80, same);
+	CHECK(higher.detail.certainty(higher.share) == 0);
 }
 
 TEST_CASE(

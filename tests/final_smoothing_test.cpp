@@ -19,16 +19,29 @@ constexpr double SIGMA = 0.2;
 /// follows the rest of the noise.
 struct Halfway {
 	Halfway(const TriangleMesh& truth_given, double way, int threads = 1) :
-			truth(truth_given), f(noisy(truth, SIGMA), threads), positions(f.mesh.positions),
+			Halfway(truth_given, noisy(truth_given, SIGMA), {}, way, threads)
+	{
+	}
+
+	/// @param noisy_mesh    the truth with noise
+	/// @param factors_given of the noise at the vertices, or none
+	Halfway(
+		const TriangleMesh& truth_given,
+		const TriangleMesh& noisy_mesh,
+		const std::vector<double>& factors_given,
+		double way,
+		int threads = 1) :
+			truth(truth_given),
+			factors(factors_given), f(noisy_mesh, threads), positions(f.mesh.positions),
 			probe(
 				f.workspace,
-				SIGMA * mean_edge_length(truth.positions, truth.faces),
+				{SIGMA * mean_edge_length(truth.positions, truth.faces), factors},
 				truth.positions),
 			responses(probe.normals())
 	{
 		for (std::size_t i = 0; i < positions.size(); ++i) {
 			positions[i] += way * (truth.positions[i] - positions[i]);
-			responses[i] *= (1 - way) * probe.signs()[i];
+			responses[i] *= (1 - way) * probe.noise_at(i);
 		}
 	}
 
@@ -50,6 +63,7 @@ struct Halfway {
 	}
 
 	TriangleMesh truth;
+	std::vector<double> factors;
 	StepFixture f;
 	std::vector<Point> positions;
 	Probe probe;
@@ -110,6 +124,23 @@ TEST_CASE("The share of the final smoothing is that which leaves the least", "[f
 	}
 }
 
+TEST_CASE("The share of the final smoothing goes by the noise of each vertex", "[final_smoothing]")
+{
+	const auto half = [](const Point& p) { return p.x() > 0 ? 1.4 : 0.2; };
+	for (const double height : {1.0, 1.5}) {
+		CAPTURE(height);
+		const TriangleMesh truth = bumpy_sphere(12000, 6, height);
+		std::vector<double> factors;
+		for (const Point& position : truth.positions)
+			factors.push_back(half(position));
+		const Halfway method(truth, unevenly_noisy(truth, SIGMA, half), factors, 0.5);
+		const FinalSmoothing choice = method.choice();
+		REQUIRE(choice.share > 0.05);
+		const double best = std::min(1.0, best_share(method, choice.pairs));
+		CHECK(choice.share == Approx(best).margin(0.15));
+	}
+}
+
 TEST_CASE("Edges that a method found are not smoothed", "[final_smoothing]")
 {
 	for (const char* name : {"cube", "part"}) {
@@ -152,7 +183,7 @@ TEST_CASE(
 		return result;
 	};
 	std::vector<Point> renumbered = there(here.positions);
-	const Probe its_probe(g.workspace, here.probe.sigma(), there(truth.positions));
+	const Probe its_probe(g.workspace, here.probe.noise(), there(truth.positions));
 	const FinalSmoothing choice =
 		choose_smoothing(g.workspace, its_probe, there(here.responses), renumbered);
 	CHECK(choice.pairs == here.choice().pairs);

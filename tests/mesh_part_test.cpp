@@ -74,4 +74,13 @@ TEST_CASE("Places are the same ones however a mesh is numbered", "[mesh_part]")
 	CHECK(here.mesh.fixed.size() == here.mesh.positions.size());
 	for (std::size_t i = 0; i < here.mesh.fixed.size(); ++i)
 		REQUIRE((here.mesh.fixed[i] != 0) == (here.mesh.positions[i].x() > 0.5));
+	// Values at the vertices go along.
+	std::vector<double> heights;
+	for (const Point& position : mesh.positions)
+		heights.push_back(position.z());
+	const std::vector<double> own = here.values_of(heights);
+	REQUIRE(own.size() == here.mesh.positions.size());
+	for (std::size_t i = 0; i < own.size(); ++i)
+		REQUIRE(own[i] == here.mesh.positions[i].z());
+	CHECK(here.values_of({}).empty());
 }

@@ -60,6 +60,15 @@ double factor_planned_for(std::vector<double> factors)
 	return factors.empty() ? 1 : std::max(1.0, quantile(factors, MOST_SHARE));
 }
 
+// What the method does about that level of the noise where its strong parts are so many times it.
+AdaptivePlan plan_at(
+	double level, double planned_for, const Correlation& correlation, const DenoiseOptions& options)
+{
+	AdaptivePlan plan = plan_for(options, level * planned_for, correlation);
+	plan.noise = level;
+	return plan;
+}
+
 // Runs the method at that level of the noise, strength included, from the workspace's mesh on.
 // Returns nothing where there is too little noise to do anything.
 std::optional<AdaptiveRun> run_at(
@@ -72,8 +81,7 @@ std::optional<AdaptiveRun> run_at(
 {
 	level *= noise.seen;
 	const std::vector<double>& factors = noise.uneven.factors;
-	AdaptivePlan plan = plan_for(options, level * factor_planned_for(factors), noise.correlation);
-	plan.noise = level;
+	AdaptivePlan plan = plan_at(level, factor_planned_for(factors), noise.correlation, options);
 	// Outliers that were not found fold faces too, and are none of the level.
 	if (noise.outliers.share > 0 && level > 0)
 		plan.fold_factor = std::max(1.0, strength_factor(options.strength) * noise.most / level);
@@ -91,31 +99,36 @@ std::optional<AdaptiveRun> run_at(
 	return run_adaptively(workspace, plan, factors, positions);
 }
 
-// Gives back what broad detail a run took along with noise that is white and the same everywhere,
-// and smooths what it left rough. A mesh of many faces is tried out in places first, and what the
-// method follows of noise there is taken for that of all of it.
+// Gives back what broad detail a run took along with white noise, and smooths what it left rough. A
+// mesh of many faces is tried out in places first, and what the method follows of noise there is
+// taken for that of all of it.
 void finish(
 	double level,
 	double sigma,
+	const std::vector<double>& factors,
 	const Workspace& workspace,
 	const DenoiseOptions& options,
 	std::vector<Point>& positions)
 {
-	const auto denoised = [&](const Workspace& its_workspace) {
+	const double planned_for = factor_planned_for(factors);
+	const auto denoised = [&](const Workspace& its_workspace, const auto& its_factors) {
 		// Levels are in edge lengths, which differ.
 		const double scale = workspace.mean_edge_length / its_workspace.mean_edge_length;
-		const AdaptivePlan plan = plan_for(options, scale * level, {});
+		const AdaptivePlan plan = plan_at(scale * level, planned_for, {}, options);
 		std::vector<Point> result = its_workspace.mesh.positions;
-		run_adaptively(its_workspace, plan, {}, result);
+		run_adaptively(its_workspace, plan, its_factors, result);
 		return result;
 	};
-	const auto responses_to = [&](const Probe& probe, TriangleMesh mesh, const auto& plain) {
-		mesh.positions = probe.with_probe();
-		return probe.responses(plain, denoised(Workspace(mesh, workspace.execution)));
-	};
+	const auto responses_to =
+		[&](const Probe& probe, TriangleMesh mesh, const auto& its_factors, const auto& plain) {
+			mesh.positions = probe.with_probe();
+			const Workspace probed(mesh, workspace.execution);
+			return probe.responses(plain, denoised(probed, its_factors));
+		};
 	if (workspace.mesh.face_count() <= MOST_PROBED) {
-		const Probe probe(workspace, sigma, positions);
-		const std::vector<Point> responses = responses_to(probe, workspace.mesh, positions);
+		const Probe probe(workspace, {sigma, factors}, positions);
+		const std::vector<Point> responses =
+			responses_to(probe, workspace.mesh, factors, positions);
 		const BroadDetail detail(workspace, probe, positions);
 		detail.give_back(detail.share_followed(responses), positions);
 		const FinalSmoothing smoothing = choose_smoothing(workspace, probe, responses, positions);
@@ -123,15 +136,17 @@ void finish(
 		return;
 	}
 	const MeshPart part = cut_out_places(workspace);
+	const std::vector<double> part_factors = part.values_of(factors);
 	const Workspace part_workspace(part.mesh, workspace.execution);
-	std::vector<Point> part_positions = denoised(part_workspace);
-	const Probe probe(part_workspace, sigma, part_positions);
-	const std::vector<Point> responses = responses_to(probe, part.mesh, part_positions);
+	std::vector<Point> part_positions = denoised(part_workspace, part_factors);
+	const Probe probe(part_workspace, {sigma, part_factors}, part_positions);
+	const std::vector<Point> responses =
+		responses_to(probe, part.mesh, part_factors, part_positions);
 	const BroadDetail detail(part_workspace, probe, part_positions);
 	const double followed = detail.share_followed(responses, part.inner);
 	if (detail.certainty(followed, part.inner) > 0) {
 		detail.give_back(followed, part_positions);
-		const Probe whole(workspace, sigma, positions);
+		const Probe whole(workspace, {sigma, factors}, positions);
 		BroadDetail(workspace, whole, positions).give_back(followed, positions);
 	}
 	const FinalSmoothing smoothing =
@@ -176,8 +191,8 @@ void lower_and_run(
 	}
 	if (!last)
 		positions = workspace.mesh.positions;
-	else if (noise.uneven.factors.empty())
-		finish(strength * level, last->sigma, workspace, options, positions);
+	else
+		finish(strength * level, last->sigma, noise.uneven.factors, workspace, options, positions);
 }
 
 // The same with the outliers put back first, and the other vertices in the end.

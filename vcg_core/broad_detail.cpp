@@ -30,12 +30,16 @@ constexpr double GAIN_OF_NOISE = 0.25;
 constexpr double GAIN_OF_DETAIL = 0.45;
 constexpr double CHANCE = 20;
 
+// And by this where every vertex has a level of its own, which are less well known: noise higher
+// than thought by a seventh makes as much of a gain.
+constexpr double GAIN_OF_UNKNOWN = 0.25;
+
 } // namespace
 
 BroadDetail::BroadDetail(
 	const Workspace& workspace, const Probe& probe, const std::vector<Point>& positions) :
 		workspace_(workspace),
-		probe_(probe), moves_(moves_beside_edges(workspace, probe.sigma(), positions)),
+		probe_(probe), moves_(moves_beside_edges(workspace, probe.noise(), positions)),
 		kept_(positions.size())
 {
 	for (std::size_t i = 0; i < kept_.size(); ++i)
@@ -58,7 +62,9 @@ double BroadDetail::share_followed(
 {
 	const double kept = sum(inner, [&](std::size_t i) { return products(i)[1]; });
 	const double followed = sum(inner, [&](std::size_t i) {
-		return is_probed(i) ? kept_[i][1] * probe_.bounded_response(responses, i) : 0.0;
+		return is_probed(i) ?
+				   kept_[i][1] * probe_.bounded_response(responses, i) / probe_.noise().factor(i) :
+				   0.0;
 	});
 	return kept > 0 ? std::max(0.0, std::min(1.0, followed / kept)) : 0;
 }
@@ -83,11 +89,12 @@ double BroadDetail::gain_for(const Products& products, double share_followed)
 	return products[2] > 0 ? (products[0] - (1 - share_followed) * products[1]) / products[2] : 0;
 }
 
-double BroadDetail::certainty_of(const Mean& mean, double share_followed)
+double BroadDetail::certainty_of(const Mean& mean, double share_followed) const
 {
 	const double chance = mean.count > 0 ? CHANCE / std::sqrt(mean.count) : 1;
+	const double unknown = chance + (probe_.noise().differ() ? GAIN_OF_UNKNOWN : 0);
 	return way_between(
-		GAIN_OF_NOISE + chance, GAIN_OF_DETAIL + chance, gain_for(mean.products, share_followed));
+		GAIN_OF_NOISE + unknown, GAIN_OF_DETAIL + unknown, gain_for(mean.products, share_followed));
 }
 
 double BroadDetail::certainty(double share_followed, const std::vector<std::uint8_t>& inner) const
@@ -110,7 +117,7 @@ void BroadDetail::give_back(double share_followed, std::vector<Point>& positions
 			return;
 		const double gain = gain_for(means[i] + WEIGHT_OF_ALL * all.products, share_followed);
 		positions[i] += certainty * std::max(0.0, std::min(LARGEST_GAIN, gain)) * kept_[i][0] *
-						probe_.sigma() * probe_.normals()[i];
+						probe_.noise()[i] * probe_.normals()[i];
 	});
 }
 

@@ -61,7 +61,7 @@ private:
 		double count;
 	};
 	Mean mean_of(const std::vector<std::uint8_t>& inner) const;
-	static double certainty_of(const Mean& mean, double share_followed);
+	double certainty_of(const Mean& mean, double share_followed) const;
 	/// The gain that leaves the least.
 	static double gain_for(const Products& products, double share_followed);
 

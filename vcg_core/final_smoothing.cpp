@@ -57,8 +57,9 @@ double sum_over_edges(
 	});
 }
 
-// The square of the noise as it differs over edges: that of sigma, or less where less was taken
-// than the responses say, since the noise of neighbouring vertices goes together.
+// The square of the overall deviation of the noise as it differs over edges: the given one, or less
+// where less was taken than the responses say, since the noise of neighbouring vertices goes
+// together.
 double variance_of(
 	const Workspace& workspace,
 	const Probe& probe,
@@ -66,7 +67,6 @@ double variance_of(
 	const std::vector<double>& moves,
 	const std::vector<std::uint8_t>& inner)
 {
-	const std::vector<double>& signs = probe.signs();
 	const double taken = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
 		const double difference = moves[a] - moves[b];
 		return difference * difference;
@@ -74,18 +74,18 @@ double variance_of(
 	// Of the probe, if the method is a filter, or if what it follows are choices.
 	const double filtered = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
 		const auto left = [&](std::size_t i) {
-			return signs[i] - probe.bounded_response(responses, i);
+			return probe.noise_at(i) - probe.bounded_response(responses, i);
 		};
 		const double difference = left(a) - left(b);
 		return difference * difference;
 	});
 	const double chosen = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
-		const double sign = signs[a] - signs[b];
+		const double noise = probe.noise_at(a) - probe.noise_at(b);
 		const auto response = [&](std::size_t i) { return responses[i].dot(probe.normals()[i]); };
-		return sign * (sign - (response(a) - response(b)));
+		return noise * (noise - (response(a) - response(b)));
 	});
 	const double told = std::min(filtered, chosen);
-	const double variance = probe.sigma() * probe.sigma();
+	const double variance = probe.noise().overall() * probe.noise().overall();
 	return told > 0 ? std::min(variance, taken / told) : variance;
 }
 
@@ -99,7 +99,6 @@ FinalSmoothing choose_smoothing(
 	const std::vector<std::uint8_t>& inner)
 {
 	const std::vector<Point>& normals = probe.normals();
-	const std::vector<double>& signs = probe.signs();
 	std::vector<double> moves(positions.size());
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
 		moves[i] = (workspace.mesh.positions[i] - positions[i]).dot(normals[i]);
@@ -117,7 +116,7 @@ FinalSmoothing choose_smoothing(
 		});
 		const auto product = [&](std::size_t a, std::size_t b) {
 			return (heights[a] - heights[b]) * (moves[a] - moves[b]) -
-				   variance * (signs[a] - signs[b]) * (follows[a] - follows[b]);
+				   variance * (probe.noise_at(a) - probe.noise_at(b)) * (follows[a] - follows[b]);
 		};
 		const auto square = [&](std::size_t a, std::size_t b) {
 			return (heights[a] - heights[b]) * (heights[a] - heights[b]);

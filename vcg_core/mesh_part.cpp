@@ -22,6 +22,17 @@ constexpr std::uint8_t INNER = 2;
 
 } // namespace
 
+std::vector<double> MeshPart::values_of(const std::vector<double>& values) const
+{
+	std::vector<double> own;
+	if (values.empty())
+		return own;
+	own.reserve(indices.size());
+	for (const Index i : indices)
+		own.push_back(values[at(i)]);
+	return own;
+}
+
 MeshPart cut_out_places(const Workspace& workspace)
 {
 	const TriangleMesh& mesh = workspace.mesh;
@@ -41,6 +52,7 @@ MeshPart cut_out_places(const Workspace& workspace)
 		if (states[at(i)] == 0)
 			continue;
 		numbers[at(i)] = part.mesh.vertex_count();
+		part.indices.push_back(i);
 		part.inner.push_back(states[at(i)] == INNER ? 1 : 0);
 		part.mesh.positions.push_back(mesh.positions[at(i)]);
 		if (!mesh.fixed.empty())

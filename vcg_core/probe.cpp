@@ -19,8 +19,10 @@ constexpr double LARGEST_RESPONSE = 2;
 
 } // namespace
 
-Probe::Probe(const Workspace& workspace, double sigma, const std::vector<Point>& positions) :
-		workspace_(workspace), sigma_(sigma), normals_(vertex_normals(workspace, positions)),
+Probe::Probe(
+	const Workspace& workspace, const Deviations& noise, const std::vector<Point>& positions) :
+		workspace_(workspace),
+		noise_(noise), normals_(vertex_normals(workspace, positions)),
 		signs_(signs_by_value(areas_around(workspace, workspace.mesh.positions)))
 {
 	for (std::size_t i = 0; i < signs_.size(); ++i) {
@@ -34,7 +36,7 @@ std::vector<Point> Probe::with_probe() const
 	std::vector<Point> positions = workspace_.mesh.positions;
 	for (std::size_t i = 0; i < positions.size(); ++i) {
 		if (signs_[i] != 0)
-			positions[i] += PROBE * sigma_ * signs_[i] * normals_[i];
+			positions[i] += PROBE * noise_[i] * signs_[i] * normals_[i];
 	}
 	return positions;
 }
@@ -44,7 +46,7 @@ Probe::responses(const std::vector<Point>& positions, const std::vector<Point>& 
 {
 	std::vector<Point> responses(positions.size());
 	workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
-		responses[i] = (probed[i] - positions[i]) / (PROBE * sigma_);
+		responses[i] = (probed[i] - positions[i]) / (PROBE * noise_.overall());
 	});
 	return responses;
 }
@@ -52,7 +54,8 @@ Probe::responses(const std::vector<Point>& positions, const std::vector<Point>& 
 double Probe::bounded_response(const std::vector<Point>& responses, std::size_t vertex) const
 {
 	const double response = responses[vertex].dot(normals_[vertex]);
-	return std::max(-LARGEST_RESPONSE, std::min(LARGEST_RESPONSE, response));
+	const double largest = LARGEST_RESPONSE * noise_.factor(vertex);
+	return std::max(-largest, std::min(largest, response));
 }
 
 } // namespace orthopoly

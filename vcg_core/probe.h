@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "deviations.h"
 #include "workspace.h"
 
 #include <vector>
@@ -15,9 +16,9 @@ namespace orthopoly {
 class Probe {
 public:
 	/// @param workspace its mesh as measured; has to outlive this
-	/// @param sigma     the noise that was taken, in the caller's length unit; > 0
+	/// @param noise     that was taken, in the caller's length unit; > 0
 	/// @param positions #V denoised, whose normals the probe moves vertices along
-	Probe(const Workspace& workspace, double sigma, const std::vector<Point>& positions);
+	Probe(const Workspace& workspace, const Deviations& noise, const std::vector<Point>& positions);
 
 	/// #V as measured, with the probe.
 	std::vector<Point> with_probe() const;
@@ -27,9 +28,11 @@ public:
 	/// #V unit normals, or zero.
 	const std::vector<Point>& normals() const { return normals_; }
 	/// As given.
-	double sigma() const { return sigma_; }
+	const Deviations& noise() const { return noise_; }
+	/// A vertex's sign times its deviation, over the overall one.
+	double noise_at(std::size_t vertex) const { return noise_.factor(vertex) * signs_[vertex]; }
 
-	/// How far results of the method differ, in units of the probe: #V.
+	/// How far results of the method differ, in units of the probe's overall deviation: #V.
 	///
 	/// @param positions #V denoised
 	/// @param probed    #V the same method's result for `with_probe`
@@ -41,7 +44,7 @@ public:
 
 private:
 	const Workspace& workspace_;
-	double sigma_;
+	Deviations noise_;
 	std::vector<Point> normals_;
 	std::vector<double> signs_;
 };

@@ -229,6 +229,33 @@ TEST_CASE(
 	}
 }
 
+TEST_CASE(
+	"Noise that was smoothed is alike everywhere to three rings, however a surface bends",
+	"[noise_correlation][slow]")
+{
+	for (const TriangleMesh& clean : {make_torus(8000), bumpy_sphere(12000, 20, 1.0)}) {
+		CAPTURE(clean.face_count());
+		CHECK(measured(clean).certainty_by_rise() == 0);
+		const TriangleMesh white = noisy(clean, 0.1);
+		CHECK(measured(white).certainty_by_rise() == 0);
+		CHECK(measured(white, 1, true).near.edge_correlation < 0.03);
+		for (const double sigma : {0.12, 0.2}) {
+			CAPTURE(sigma);
+			const NoiseCorrelation found = measured(with_correlated_noise(clean, sigma, 1));
+			CHECK(found.near.unevenness < 1.4);
+			CHECK(found.near.edge_correlation > 0.13);
+			CHECK(found.near.rise == Approx(1.35).margin(0.1));
+			CHECK(found.near.next_rise < 0.75 * found.near.rise);
+			CHECK(found.near.level == Approx(0.5 * sigma).epsilon(0.1));
+			CHECK(found.certainty_by_rise() > 0.79);
+		}
+	}
+	// Ground that is as rough everywhere does not bend.
+	const NoiseCorrelation rough = measured(with_relief(make_torus(8000)), 1, true);
+	CHECK(rough.near.unevenness < 1.5);
+	CHECK(rough.certainty_by_rise() == 0);
+}
+
 TEST_CASE("Noise that was smoothed more rises steeply and bends", "[noise_correlation][slow]")
 {
 	for (const std::string name : {"cube", "sphere", "thin_plate"}) {

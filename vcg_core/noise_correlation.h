@@ -41,6 +41,21 @@ struct NoiseCorrelation {
 	/// Residual deviation of narrow polynomials in the flattest fifth of the places over that in
 	/// the flattest tenth. 0 where not measured.
 	double narrow_spread = 0;
+	/// What polynomials over three rings see, which is less of the shape than any wider ones do. 0
+	/// where not measured.
+	struct Near {
+		/// Residual deviation in the flattest tenth of the places, in mean edge lengths.
+		double level = 0;
+		/// The one at an ordinary place over that.
+		double unevenness = 0;
+		/// As that of all, over the flattest places.
+		double edge_correlation = 0;
+		/// The power of the rings that the residual deviation rises by from two rings, and the one
+		/// it goes on by to four.
+		double rise = 0;
+		double next_rise = 0;
+	};
+	Near near = {};
 	/// Residual deviation of wide polynomials at an ordinary place over that in the flattest ones:
 	/// 1 where the noise is all there is. 0 where not measured.
 	double unevenness = 0;

@@ -43,7 +43,7 @@ TEST_CASE("White noise is not taken for correlated, on any surface", "[noise_cor
 			CAPTURE(name, static_cast<int>(direction), sigma);
 			const TriangleMesh mesh = noisy(find_recipe(name).make(4000), sigma, direction);
 			CHECK(measured(mesh).certainty() == 0);
-			CHECK(measured(mesh).certainty_by_rise() == 0);
+			CHECK(measured(mesh).by_rise().certainty == 0);
 		}
 	}
 	for (const double sigma : {0.05, 0.2, 0.6}) {
@@ -176,15 +176,15 @@ TEST_CASE("Rough ground is not taken for noise", "[noise_correlation][slow]")
 	for (const double sigma : {0.02, 0.05, 0.1}) {
 		CAPTURE(sigma);
 		CHECK(measured(noisy(mesh, sigma)).certainty() < 0.1);
-		CHECK(measured(noisy(mesh, sigma)).certainty_by_rise() == 0);
+		CHECK(measured(noisy(mesh, sigma)).by_rise().certainty == 0);
 	}
 	const TriangleMesh rough = with_relief(make_sphere(20000));
 	const NoiseCorrelation found = measured(rough);
 	CAPTURE(found.first_rise, found.further_rise, found.middle_level);
 	CHECK(found.first_rise > 0.7);
 	CHECK(found.middle_level > 0.045);
-	CHECK(found.certainty_by_rise() == 0);
-	CHECK(measured(noisy(rough, 0.1)).certainty_by_rise() == 0);
+	CHECK(found.by_rise().certainty == 0);
+	CHECK(measured(noisy(rough, 0.1)).by_rise().certainty == 0);
 }
 
 TEST_CASE("Grooves of one width do not rise like noise that was smoothed", "[noise_correlation]")
@@ -202,7 +202,7 @@ TEST_CASE("Grooves of one width do not rise like noise that was smoothed", "[noi
 			measured(with_positions(sphere, each(sphere.positions, grooved)));
 		CAPTURE(found.first_rise, found.further_rise);
 		CHECK(found.middle_level > 0.5 * height);
-		CHECK(found.certainty_by_rise() == 0);
+		CHECK(found.by_rise().certainty == 0);
 	}
 }
 
@@ -218,14 +218,14 @@ TEST_CASE(
 			CHECK(found.first_rise > 0.65);
 			CHECK(found.further_rise < 0.7);
 			CHECK(found.deviation() == Approx(sigma).epsilon(0.15));
-			CHECK(found.certainty_by_rise() > 0.8);
-			CHECK(measured(clean).certainty_by_rise() == 0);
+			CHECK(found.by_rise().certainty > 0.8);
+			CHECK(measured(clean).by_rise().certainty == 0);
 		}
 	}
 	// On flat faces it may be faint.
 	for (const std::string name : {"cube", "part"}) {
 		const TriangleMesh faint = with_correlated_noise(find_recipe(name).make(40000), 0.015, 1);
-		CHECK(measured(faint).certainty_by_rise() > 0.8);
+		CHECK(measured(faint).by_rise().certainty > 0.8);
 	}
 }
 
@@ -235,9 +235,9 @@ TEST_CASE(
 {
 	for (const TriangleMesh& clean : {make_torus(8000), bumpy_sphere(12000, 20, 1.0)}) {
 		CAPTURE(clean.face_count());
-		CHECK(measured(clean).certainty_by_rise() == 0);
+		CHECK(measured(clean).by_rise().certainty == 0);
 		const TriangleMesh white = noisy(clean, 0.1);
-		CHECK(measured(white).certainty_by_rise() == 0);
+		CHECK(measured(white).by_rise().certainty == 0);
 		CHECK(measured(white, 1, true).near.edge_correlation < 0.03);
 		for (const double sigma : {0.12, 0.2}) {
 			CAPTURE(sigma);
@@ -247,27 +247,27 @@ TEST_CASE(
 			CHECK(found.near.rise == Approx(1.35).margin(0.1));
 			CHECK(found.near.next_rise < 0.75 * found.near.rise);
 			CHECK(found.near.level == Approx(0.5 * sigma).epsilon(0.1));
-			CHECK(found.certainty_by_rise() > 0.79);
+			CHECK(found.by_rise().certainty > 0.79);
 		}
 	}
 	// Ground that is as rough everywhere does not bend.
 	const NoiseCorrelation rough = measured(with_relief(make_torus(8000)), 1, true);
 	CHECK(rough.near.unevenness < 1.5);
-	CHECK(rough.certainty_by_rise() == 0);
+	CHECK(rough.by_rise().certainty == 0);
 }
 
 TEST_CASE("Noise that was smoothed more rises steeply and bends", "[noise_correlation][slow]")
 {
 	for (const std::string name : {"cube", "sphere", "thin_plate"}) {
 		const TriangleMesh clean = find_recipe(name).make(16000);
-		CHECK(measured(clean).certainty_by_rise() == 0);
+		CHECK(measured(clean).by_rise().certainty == 0);
 		for (const int steps : {2, 3, 4}) {
 			CAPTURE(name, steps);
 			const NoiseCorrelation found = measured(with_correlated_noise(clean, 0.12, steps));
 			CAPTURE(found.first_rise, found.further_rise, found.narrow_spread);
 			CHECK(found.first_rise - found.further_rise > 0.6);
 			CHECK(found.narrow_spread < 1.18);
-			CHECK(found.certainty_by_rise() > 0.5);
+			CHECK(found.by_rise().certainty > 0.5);
 			CHECK(found.deviation() == Approx(0.12).epsilon(0.35));
 		}
 	}
@@ -305,7 +305,7 @@ TEST_CASE("Coarse boxes are no volumes", "[noise_correlation][slow]")
 			CAPTURE(name, faces);
 			const TriangleMesh clean = find_recipe(name).make(faces);
 			CHECK(measured(clean).certainty() == 0);
-			CHECK(measured(clean).certainty_by_rise() == 0);
+			CHECK(measured(clean).by_rise().certainty == 0);
 			CHECK(measured(noisy(clean, 0.1)).certainty() == 0);
 		}
 	}

@@ -27,9 +27,11 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 	const std::vector<Point> smooth = surface_below_heights(workspace, measured);
 	const NoiseLevels levels = estimate_noise_levels(workspace, measured, smooth);
 	MeshNoise noise;
-	double by_rise = 0;
+	NoiseCorrelation::ByRise by_rise;
 	double narrow_level = 0;
 	double deviation = 0;
+	// How far what the rise tells counts.
+	double counts = 0;
 	if (options.noise_type != NoiseType::White) {
 		const bool scanner = options.noise_type == NoiseType::Scanner;
 		const NoiseCorrelation found =
@@ -38,7 +40,8 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 		if (levels.rounding > 0 && !scanner)
 			noise.correlation.share = way_between(FINE_ROUNDING, COARSE_ROUNDING, levels.rounding);
 		else {
-			by_rise = (1 - levels.uneven.certainty) * found.certainty_by_rise();
+			by_rise = found.by_rise();
+			counts = 1 - levels.uneven.certainty;
 			deviation = found.deviation();
 		}
 		narrow_level = found.narrow_level;
@@ -50,8 +53,9 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 	// correlated.
 	if (noise.correlation.share < 0.5 && noise.uneven.certainty < 0.5)
 		noise.outliers = repair_outliers(workspace, levels);
-	noise.correlation.share =
-		std::max(noise.correlation.share, (1 - noise.outliers.share) * by_rise);
+	counts *= 1 - noise.outliers.share;
+	const double certainty = std::max(noise.correlation.share, counts * by_rise.certainty);
+	noise.correlation.share = std::max(noise.correlation.share, counts * by_rise.share);
 	if (noise.correlation.share >= 0.5)
 		noise.outliers = {};
 	if (noise.correlation.share > 0 || noise.outliers.share > 0)
@@ -61,13 +65,13 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 		noise.correlation.share > 0 ? std::max(levels.rough, narrow_level) : levels.rough;
 	// Noise that goes together over several edges grows with the rings as detail does.
 	const double white = noise.outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;
-	const auto level_for = [&](double correlated) {
-		const double even = between(white, correlated, noise.correlation.share);
-		const double level = between(even, noise.uneven.level, noise.uneven.certainty);
+	const auto level_for = [&](double correlated, double share) {
+		const double same = between(white, correlated, share);
+		const double level = between(same, noise.uneven.level, noise.uneven.certainty);
 		return between(level, noise.outliers.level, noise.outliers.share);
 	};
-	noise.level = level_for(std::max(rough, deviation));
-	noise.seen = noise.level > 0 ? level_for(rough) / noise.level : 1;
+	noise.level = level_for(std::max(rough, deviation), certainty);
+	noise.seen = noise.level > 0 ? level_for(rough, noise.correlation.share) / noise.level : 1;
 	noise.most = std::max(rough, noise.uneven.level);
 	noise.rounding = levels.rounding;
 	return noise;

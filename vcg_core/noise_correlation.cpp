@@ -269,7 +269,7 @@ double NoiseCorrelation::certainty() const
 	return std::max(on_voxels, elsewhere * CORRELATED(edge_correlation) * SLOW_GROWTH(growth));
 }
 
-double NoiseCorrelation::certainty_by_rise() const
+NoiseCorrelation::ByRise NoiseCorrelation::by_rise() const
 {
 	const double bend = first_rise - further_rise;
 	const double little = RISES(first_rise) * NOT_STEEPLY(first_rise) * NO_FURTHER(further_rise) *
@@ -282,7 +282,8 @@ double NoiseCorrelation::certainty_by_rise() const
 		RISES_NEAR(near.rise) * NOT_STEEPEST_NEAR(near.rise) *
 		BENDS_NEAR(near.next_rise - LESS_STEEPLY * near.rise) * MOSTLY_NOISE(further_rise) *
 		STRONG_NEAR(near.level) * BELOW_FEATURES_NEAR(near.level);
-	return std::max({little, more, SHARE_ANYWHERE * anywhere});
+	return {
+		std::max({little, more, anywhere}), std::max({little, more, SHARE_ANYWHERE * anywhere})};
 }
 
 double NoiseCorrelation::is_of_voxels() const

@@ -69,10 +69,15 @@ struct NoiseCorrelation {
 	/// From 0 (white, or not to be told) to 1 (correlated), with a ramp between, where the mesh
 	/// shows where it comes from.
 	double certainty() const;
-	/// The same by the rise of the residuals, wherever the mesh comes from. Not to be asked where
-	/// white noise differs from place to place or is made of outliers: residuals rise there as
-	/// well, from places that have little of it into those around.
-	double certainty_by_rise() const;
+	/// The same by the rise of the residuals, wherever the mesh comes from, and how far the noise
+	/// is to be taken for correlated then: less where residuals are the shape's, too. Not to be
+	/// asked where white noise differs from place to place or is made of outliers: residuals rise
+	/// there as well, from places that have little of it into those around.
+	struct ByRise {
+		double certainty = 0;
+		double share = 0;
+	};
+	ByRise by_rise() const;
 	/// From 0 to 1: how surely the mesh was extracted from a volume, whatever its noise.
 	double is_of_voxels() const;
 	/// Of the noise along the normals, in mean edge lengths, where it is correlated: more than any

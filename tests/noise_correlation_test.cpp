@@ -250,6 +250,14 @@ TEST_CASE(
 			CHECK(found.by_rise().certainty > 0.79);
 		}
 	}
+	// Where edges are near most places, the flattest are alike.
+	const TriangleMesh part = make_part(12000);
+	CHECK(measured(part).by_rise().certainty == 0);
+	CHECK(measured(noisy(part, 0.12)).by_rise().certainty == 0);
+	const NoiseCorrelation on_part = measured(with_correlated_noise(part, 0.12, 1));
+	CHECK(on_part.near.unevenness > 2);
+	CHECK(on_part.near.spread < 1.16);
+	CHECK(on_part.by_rise().certainty > 0.99);
 	// Ground that is as rough everywhere does not bend.
 	const NoiseCorrelation rough = measured(with_relief(make_torus(8000)), 1, true);
 	CHECK(rough.near.unevenness < 1.5);

@@ -46,7 +46,8 @@ struct NoiseCorrelation {
 	struct Near {
 		/// Residual deviation in the flattest tenth of the places, in mean edge lengths.
 		double level = 0;
-		/// The one at an ordinary place over that.
+		/// The one in the flattest fifth over that, and the one at an ordinary place.
+		double spread = 0;
 		double unevenness = 0;
 		/// As that of all, over the flattest places.
 		double edge_correlation = 0;

@@ -74,6 +74,24 @@ TriangleMesh two_sheets(double apart)
 	return mesh;
 }
 
+/// Noise that so many umbrella steps smoothed, before and after.
+struct SmoothedNoise {
+	static constexpr double SIGMA = 0.12;
+
+	SmoothedNoise(const TriangleMesh& truth_given, int steps) :
+			truth(truth_given), mesh(with_correlated_noise(truth, SIGMA, steps)),
+			result(denoised(mesh)), before(measure(mesh, truth)),
+			after(measure(with_positions(mesh, result.positions), truth))
+	{
+	}
+
+	TriangleMesh truth;
+	TriangleMesh mesh;
+	DenoiseResult result;
+	ErrorMeasures before;
+	ErrorMeasures after;
+};
+
 } // namespace
 
 TEST_CASE("Size, place, turn and order of a mesh do not matter", "[adaptive_method][slow]")
@@ -368,34 +386,26 @@ TEST_CASE("Noise that was smoothed more is found and goes", "[adaptive_method][s
 {
 	for (const std::string name : {"sphere", "cube", "thin_plate"}) {
 		CAPTURE(name);
-		const TriangleMesh truth = find_recipe(name).make(16000);
-		const TriangleMesh mesh = with_correlated_noise(truth, 0.12, 3);
-		const DenoiseResult result = denoised(mesh);
-		CHECK(result.resolved.noise_type == NoiseType::Scanner);
-		CHECK(result.estimated_noise == Approx(0.12).epsilon(0.25));
-		const ErrorMeasures before = measure(mesh, truth);
-		const ErrorMeasures after = measure(with_positions(mesh, result.positions), truth);
-		CAPTURE(before.mean_angle, after.mean_angle, after.relative_vertex_error);
-		CHECK(after.mean_angle < 0.3 * before.mean_angle);
-		CHECK(after.relative_vertex_error < 0.6 * before.relative_vertex_error);
-		CHECK(after.folded_faces == 0);
+		const SmoothedNoise noise(find_recipe(name).make(16000), 3);
+		CHECK(noise.result.resolved.noise_type == NoiseType::Scanner);
+		CHECK(noise.result.estimated_noise == Approx(noise.SIGMA).epsilon(0.25));
+		CAPTURE(noise.before.mean_angle, noise.after.mean_angle);
+		CHECK(noise.after.mean_angle < 0.3 * noise.before.mean_angle);
+		CHECK(noise.after.relative_vertex_error < 0.6 * noise.before.relative_vertex_error);
+		CHECK(noise.after.folded_faces == 0);
 	}
 }
 
 TEST_CASE("Noise that was smoothed is found and goes", "[adaptive_method][slow]")
 {
-	const TriangleMesh truth = make_part(40000);
-	const TriangleMesh mesh = with_correlated_noise(truth, 0.12, 1);
-	const DenoiseResult result = denoised(mesh);
-	CHECK(result.resolved.noise_type == NoiseType::Scanner);
-	CHECK(result.estimated_noise == Approx(0.12).epsilon(0.15));
-	const double before = measure(mesh, truth).mean_angle;
-	const ErrorMeasures after = measure(with_positions(mesh, result.positions), truth);
-	CAPTURE(before, after.mean_angle, after.relative_vertex_error);
-	CHECK(after.mean_angle < 0.35 * before);
-	CHECK(after.mean_angle < 0.6 * angle_after(mesh, NoiseType::White, truth));
-	CHECK(after.relative_vertex_error < 0.06);
-	CHECK(after.folded_faces < truth.face_count() / 5000);
+	const SmoothedNoise noise(make_part(40000), 1);
+	CHECK(noise.result.resolved.noise_type == NoiseType::Scanner);
+	CHECK(noise.result.estimated_noise == Approx(noise.SIGMA).epsilon(0.15));
+	CAPTURE(noise.before.mean_angle, noise.after.mean_angle, noise.after.relative_vertex_error);
+	CHECK(noise.after.mean_angle < 0.35 * noise.before.mean_angle);
+	CHECK(noise.after.mean_angle < 0.6 * angle_after(noise.mesh, NoiseType::White, noise.truth));
+	CHECK(noise.after.relative_vertex_error < 0.06);
+	CHECK(noise.after.folded_faces < noise.truth.face_count() / 5000);
 }
 
 TEST_CASE(
@@ -404,16 +414,13 @@ TEST_CASE(
 {
 	for (const TriangleMesh& truth : {make_torus(8000), make_part(12000)}) {
 		CAPTURE(truth.face_count());
-		const TriangleMesh mesh = with_correlated_noise(truth, 0.12, 1);
-		const DenoiseResult result = denoised(mesh);
-		CHECK(result.resolved.noise_type == NoiseType::Scanner);
-		CHECK(result.estimated_noise == Approx(0.12).epsilon(0.15));
-		const ErrorMeasures before = measure(mesh, truth);
-		const ErrorMeasures after = measure(with_positions(mesh, result.positions), truth);
-		CAPTURE(before.mean_angle, after.mean_angle, after.relative_vertex_error);
-		CHECK(after.mean_angle < 0.4 * before.mean_angle);
-		CHECK(after.vertex_error < 0.6 * before.vertex_error);
-		CHECK(after.folded_faces == 0);
+		const SmoothedNoise noise(truth, 1);
+		CHECK(noise.result.resolved.noise_type == NoiseType::Scanner);
+		CHECK(noise.result.estimated_noise == Approx(noise.SIGMA).epsilon(0.15));
+		CAPTURE(noise.before.mean_angle, noise.after.mean_angle);
+		CHECK(noise.after.mean_angle < 0.4 * noise.before.mean_angle);
+		CHECK(noise.after.vertex_error < 0.6 * noise.before.vertex_error);
+		CHECK(noise.after.folded_faces == 0);
 	}
 }
 

@@ -30,7 +30,7 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 	NoiseCorrelation::ByRise by_rise;
 	double narrow_level = 0;
 	double deviation = 0;
-	// How far what the rise tells counts.
+	// How far what the rise tells counts: not where noise rather differs from place to place.
 	double counts = 0;
 	if (options.noise_type != NoiseType::White) {
 		const bool scanner = options.noise_type == NoiseType::Scanner;
@@ -41,7 +41,7 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 			noise.correlation.share = way_between(FINE_ROUNDING, COARSE_ROUNDING, levels.rounding);
 		else {
 			by_rise = found.by_rise();
-			counts = 1 - levels.uneven.certainty;
+			counts = std::max(0.0, 1 - 2 * levels.uneven.certainty);
 			deviation = found.deviation();
 		}
 		narrow_level = found.narrow_level;

@@ -85,6 +85,16 @@ struct SmoothedNoise {
 	{
 	}
 
+	/// Checks that it was found, its level to that part of it, and what it came down to.
+	void check_removed(double estimate, double angle, double vertex_error) const
+	{
+		CHECK(result.resolved.noise_type == NoiseType::Scanner);
+		CHECK(result.estimated_noise == Approx(SIGMA).epsilon(estimate));
+		CAPTURE(before.mean_angle, after.mean_angle, after.relative_vertex_error);
+		CHECK(after.mean_angle < angle * before.mean_angle);
+		CHECK(after.vertex_error < vertex_error * before.vertex_error);
+	}
+
 	TriangleMesh truth;
 	TriangleMesh mesh;
 	DenoiseResult result;
@@ -387,11 +397,7 @@ TEST_CASE("Noise that was smoothed more is found and goes", "[adaptive_method][s
 	for (const std::string name : {"sphere", "cube", "thin_plate"}) {
 		CAPTURE(name);
 		const SmoothedNoise noise(find_recipe(name).make(16000), 3);
-		CHECK(noise.result.resolved.noise_type == NoiseType::Scanner);
-		CHECK(noise.result.estimated_noise == Approx(noise.SIGMA).epsilon(0.25));
-		CAPTURE(noise.before.mean_angle, noise.after.mean_angle);
-		CHECK(noise.after.mean_angle < 0.3 * noise.before.mean_angle);
-		CHECK(noise.after.relative_vertex_error < 0.6 * noise.before.relative_vertex_error);
+		noise.check_removed(0.25, 0.3, 0.6);
 		CHECK(noise.after.folded_faces == 0);
 	}
 }
@@ -399,12 +405,8 @@ TEST_CASE("Noise that was smoothed more is found and goes", "[adaptive_method][s
 TEST_CASE("Noise that was smoothed is found and goes", "[adaptive_method][slow]")
 {
 	const SmoothedNoise noise(make_part(40000), 1);
-	CHECK(noise.result.resolved.noise_type == NoiseType::Scanner);
-	CHECK(noise.result.estimated_noise == Approx(noise.SIGMA).epsilon(0.15));
-	CAPTURE(noise.before.mean_angle, noise.after.mean_angle, noise.after.relative_vertex_error);
-	CHECK(noise.after.mean_angle < 0.35 * noise.before.mean_angle);
+	noise.check_removed(0.15, 0.35, 0.6);
 	CHECK(noise.after.mean_angle < 0.6 * angle_after(noise.mesh, NoiseType::White, noise.truth));
-	CHECK(noise.after.relative_vertex_error < 0.06);
 	CHECK(noise.after.folded_faces < noise.truth.face_count() / 5000);
 }
 
@@ -415,11 +417,7 @@ TEST_CASE(
 	for (const TriangleMesh& truth : {make_torus(8000), make_part(12000)}) {
 		CAPTURE(truth.face_count());
 		const SmoothedNoise noise(truth, 1);
-		CHECK(noise.result.resolved.noise_type == NoiseType::Scanner);
-		CHECK(noise.result.estimated_noise == Approx(noise.SIGMA).epsilon(0.15));
-		CAPTURE(noise.before.mean_angle, noise.after.mean_angle);
-		CHECK(noise.after.mean_angle < 0.4 * noise.before.mean_angle);
-		CHECK(noise.after.vertex_error < 0.6 * noise.before.vertex_error);
+		noise.check_removed(0.15, 0.4, 0.6);
 		CHECK(noise.after.folded_faces == 0);
 	}
 }

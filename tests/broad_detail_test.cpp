@@ -109,14 +109,8 @@ TEST_CASE("Broad detail is given back, noise is not", "[broad_detail]")
 TEST_CASE("Broad detail is given back where noise differs from place to place", "[broad_detail]")
 {
 	const auto ramp = [](const Point& p) { return 1 + 0.8 * p.x(); };
-	const auto factors_on = [&](const TriangleMesh& truth) {
-		std::vector<double> factors;
-		for (const Point& position : truth.positions)
-			factors.push_back(ramp(position));
-		return factors;
-	};
 	const TriangleMesh bumpy = bumpy_sphere(12000, 10, 0.8);
-	const std::vector<double> factors = factors_on(bumpy);
+	const std::vector<double> factors = share_at_vertices(bumpy, ramp);
 	const Probed probed(unevenly_noisy(bumpy, NOISE, ramp), 320, factors);
 	for (std::size_t i = 0; i < factors.size(); ++i) {
 		const double distance =

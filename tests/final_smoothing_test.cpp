@@ -130,10 +130,8 @@ TEST_CASE("The share of the final smoothing goes by the noise of each vertex", "
 	for (const double height : {1.0, 1.5}) {
 		CAPTURE(height);
 		const TriangleMesh truth = bumpy_sphere(12000, 6, height);
-		std::vector<double> factors;
-		for (const Point& position : truth.positions)
-			factors.push_back(half(position));
-		const Halfway method(truth, unevenly_noisy(truth, SIGMA, half), factors, 0.5);
+		const Halfway method(
+			truth, unevenly_noisy(truth, SIGMA, half), share_at_vertices(truth, half), 0.5);
 		const FinalSmoothing choice = method.choice();
 		REQUIRE(choice.share > 0.05);
 		const double best = std::min(1.0, best_share(method, choice.pairs));

@@ -70,6 +70,16 @@ TriangleMesh unevenly_noisy(const TriangleMesh& mesh, double sigma, Share share)
 	return result;
 }
 
+/// #V: that share at the mesh's vertices.
+template<class Share>
+std::vector<double> share_at_vertices(const TriangleMesh& mesh, Share share)
+{
+	std::vector<double> shares;
+	for (const Point& position : mesh.positions)
+		shares.push_back(share(position));
+	return shares;
+}
+
 /// A rotation about no axis in particular.
 inline Eigen::Matrix3d some_rotation()
 {

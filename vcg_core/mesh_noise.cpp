@@ -30,36 +30,37 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 	NoiseCorrelation::ByRise by_rise;
 	double narrow_level = 0;
 	double deviation = 0;
-	// How far what the rise tells counts: not where noise rather differs from place to place.
-	double counts = 0;
+	// Noise that differs from place to place looks as if it went together, but not the other way
+	// round.
+	const double even = 1 - levels.uneven.certainty;
 	if (options.noise_type != NoiseType::White) {
 		const bool scanner = options.noise_type == NoiseType::Scanner;
 		const NoiseCorrelation found =
 			measure_noise_correlation(workspace, measured, smooth, scanner);
-		noise.correlation = {scanner ? 1 : found.certainty(), found.reach()};
+		noise.correlation = {scanner ? 1 : even * found.certainty(), found.reach()};
 		if (levels.rounding > 0 && !scanner)
 			noise.correlation.share = way_between(FINE_ROUNDING, COARSE_ROUNDING, levels.rounding);
 		else {
 			by_rise = found.by_rise();
-			counts = std::max(0.0, 1 - 2 * levels.uneven.certainty);
 			deviation = found.deviation();
 		}
 		narrow_level = found.narrow_level;
 	}
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
-	if (noise.correlation.share == 0)
-		noise.uneven = levels.uneven;
 	// Beside a clean part noise looks like outliers, and so does noise that is strong and
 	// correlated.
-	if (noise.correlation.share < 0.5 && noise.uneven.certainty < 0.5)
+	if (noise.correlation.share < 0.5 && levels.uneven.certainty < 0.5)
 		noise.outliers = repair_outliers(workspace, levels);
-	counts *= 1 - noise.outliers.share;
-	const double certainty = std::max(noise.correlation.share, counts * by_rise.certainty);
+	const double counts = even * (1 - noise.outliers.share);
+	double certainty = std::max(noise.correlation.share, counts * by_rise.certainty);
 	noise.correlation.share = std::max(noise.correlation.share, counts * by_rise.share);
 	if (noise.correlation.share >= 0.5)
 		noise.outliers = {};
-	if (noise.correlation.share > 0 || noise.outliers.share > 0)
-		noise.uneven = {};
+	if (noise.outliers.share == 0 && levels.uneven.certainty > certainty) {
+		noise.uneven = levels.uneven;
+		noise.correlation.share = 0;
+		certainty = 0;
+	}
 	// What a polynomial over two rings follows of such noise, one over more does not.
 	const double rough =
 		noise.correlation.share > 0 ? std::max(levels.rough, narrow_level) : levels.rough;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "uneven_noise.h"
 
+#include "axis_noise.h"
 #include "interpolation.h"
 #include "local_heights.h"
 #include "noise_level.h"
@@ -76,24 +77,25 @@ public:
 		const Workspace& workspace,
 		const std::vector<Point>& positions,
 		const std::vector<Point>& smooth,
+		const std::vector<Point>& normals,
 		const NoiseSample& sample) :
 			workspace_(workspace),
-			smooth_(smooth), sample_(sample),
+			smooth_(smooth), normals_(normals), sample_(sample),
 			components_(number_components(workspace.mesh.faces, workspace.vertex_faces).numbers)
 	{
 		std::vector<double> areas;
-		for (const Index vertex : sample.vertices) {
+		areas.reserve(sample.vertices.size());
+		for (const Index vertex : sample.vertices)
 			areas.push_back(area_around(workspace, positions, vertex));
-			normals_.push_back(normal_at(vertex));
-		}
 		std::vector<std::size_t> numbers = subsample_by_value(areas, PLACES);
 		// So that one in so many are the same ones however the mesh lies.
 		std::sort(numbers.begin(), numbers.end(), [&](std::size_t a, std::size_t b) {
 			return areas[a] < areas[b];
 		});
-		for (const std::size_t k : numbers)
-			places_.push_back(
-				{smooth[at(sample.vertices[k])], normals_[k], components_[at(sample.vertices[k])]});
+		for (const std::size_t k : numbers) {
+			const std::size_t vertex = at(sample.vertices[k]);
+			places_.push_back({smooth[vertex], normals[vertex], components_[vertex]});
+		}
 	}
 
 	/// Reads the levels at one place in so many, where that has not been done.
@@ -138,7 +140,7 @@ private:
 	// The same by the places of a component.
 	double level_at(Index vertex, Index component) const
 	{
-		const Point normal = normal_at(vertex);
+		const Point& normal = normals_[at(vertex)];
 		double sum = 0;
 		double weights = 0;
 		for (const Place& place : places_) {
@@ -153,14 +155,6 @@ private:
 			weights += weight;
 		}
 		return weights > 0 ? sum / weights : 0;
-	}
-
-	// Of the smooth surface; zero where there is none.
-	Point normal_at(Index vertex) const
-	{
-		const Point cross = cross_product_around(workspace_, smooth_, vertex);
-		const double length = cross.norm();
-		return length > 0 ? Point(cross / length) : cross;
 	}
 
 	// Leaves the nearest of some candidates; returns the distance of the farthest of them.
@@ -208,7 +202,7 @@ private:
 		std::vector<Candidate> in_space = nearest;
 		place.square_radius = keep_nearest(NEAREST, in_space);
 		for (Candidate& candidate : nearest) {
-			const Point& normal = normals_[candidate.second];
+			const Point& normal = normals_[at(sample_.vertices[candidate.second])];
 			candidate.first +=
 				TURN * TURN * place.square_radius * (normal - place.normal).squaredNorm();
 		}
@@ -221,9 +215,8 @@ private:
 
 	const Workspace& workspace_;
 	const std::vector<Point>& smooth_;
+	const std::vector<Point>& normals_;
 	const NoiseSample& sample_;
-	/// Of the sample.
-	std::vector<Point> normals_;
 	/// #V.
 	std::vector<Index> components_;
 	std::vector<Place> places_;
@@ -274,6 +267,91 @@ double certainty_of_noise(
 		   (1 - share_drawn(workspace, positions, vertices, level * sample.edge_length));
 }
 
+/// The levels that the noise would have if it were of one kind.
+struct Levels {
+	double certainty = 0;
+	/// At the vertices of the sample, in mean edge lengths; with the detail, which tells how well
+	/// they are what was read there.
+	std::vector<double> with_detail;
+	/// #V.
+	std::vector<double> of_noise;
+};
+
+// By what is read around places.
+Levels levels_by_place(
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const std::vector<Point>& smooth,
+	const std::vector<Point>& normals,
+	const NoiseSample& sample)
+{
+	Levels result;
+	if (sample.vertices.size() < FEWEST_VERTICES)
+		return result;
+	Places places(workspace, positions, smooth, normals, sample);
+	places.read(FIRST_LOOK);
+	if (Contrast(places.levels()).certainty() == 0)
+		return result;
+	places.read(1);
+	std::vector<double>& levels = result.with_detail;
+	levels.resize(sample.vertices.size());
+	workspace.execution.for_each(static_cast<Index>(levels.size()), [&](std::size_t i) {
+		levels[i] = places.level_at(sample.vertices[i]);
+	});
+	const Contrast contrast(levels);
+	result.certainty = contrast.certainty();
+	if (result.certainty > 0)
+		result.certainty *= certainty_of_noise(
+			workspace, positions, sample, levels, std::sqrt(contrast.low * contrast.high));
+	if (result.certainty < LEAST_CERTAINTY)
+		return result;
+	result.of_noise.resize(positions.size());
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		result.of_noise[i] = places.level_at(static_cast<Index>(i));
+	});
+	return result;
+}
+
+// By the angles to one axis.
+Levels levels_by_axis(
+	const Workspace& workspace,
+	const std::vector<Point>& positions,
+	const std::vector<Point>& normals,
+	const NoiseSample& sample)
+{
+	std::vector<Point> of_sample;
+	of_sample.reserve(sample.vertices.size());
+	for (const Index vertex : sample.vertices)
+		of_sample.push_back(normals[at(vertex)]);
+	const AxisNoise noise = find_axis_noise(workspace, positions, of_sample, sample);
+	Levels result;
+	result.certainty = way_between(OUTLYING, INLYING, sample.median_ratio) * noise.certainty;
+	if (result.certainty < LEAST_CERTAINTY)
+		return result;
+	for (const Point& normal : of_sample)
+		result.with_detail.push_back(std::sqrt(noise.square_at(normal, true)));
+	for (const Point& normal : normals)
+		result.of_noise.push_back(std::sqrt(noise.square_at(normal, false)));
+	return result;
+}
+
+// How far what was read at the vertices of the sample is from the levels: mean size of the
+// logarithm.
+double misfit(const std::vector<double>& levels, const NoiseSample& sample)
+{
+	double sum = 0;
+	double count = 0;
+	for (std::size_t i = 0; i < levels.size(); ++i) {
+		const double variance = sample.whole[0][i].value;
+		const double square = levels[i] * levels[i] * sample.edge_length * sample.edge_length;
+		if (!(variance > 0 && square > 0))
+			continue;
+		sum += std::abs(std::log(variance / square));
+		count += 1;
+	}
+	return count > 0 ? sum / count : 0;
+}
+
 } // namespace
 
 UnevenNoise find_uneven_noise(
@@ -282,35 +360,26 @@ UnevenNoise find_uneven_noise(
 	const std::vector<Point>& smooth,
 	const NoiseSample& sample)
 {
-	if (sample.vertices.size() < FEWEST_VERTICES || !(sample.edge_length > 0))
+	if (!(sample.edge_length > 0))
 		return {};
-	Places places(workspace, positions, smooth, sample);
-	places.read(FIRST_LOOK);
-	if (Contrast(places.levels()).certainty() == 0)
-		return {};
-	places.read(1);
-	std::vector<double> levels(sample.vertices.size());
-	workspace.execution.for_each(static_cast<Index>(levels.size()), [&](std::size_t i) {
-		levels[i] = places.level_at(sample.vertices[i]);
-	});
-	const Contrast contrast(levels);
+	const std::vector<Point> normals = vertex_normals(workspace, smooth);
+	const Levels by_place = levels_by_place(workspace, positions, smooth, normals, sample);
+	const Levels by_axis = levels_by_axis(workspace, positions, normals, sample);
 	UnevenNoise result;
-	result.certainty = contrast.certainty();
-	if (result.certainty > 0)
-		result.certainty *= certainty_of_noise(
-			workspace, positions, sample, levels, std::sqrt(contrast.low * contrast.high));
+	result.certainty = std::max(by_place.certainty, by_axis.certainty);
 	if (result.certainty < LEAST_CERTAINTY)
 		return {};
+	const bool is_axis =
+		by_place.certainty < LEAST_CERTAINTY ||
+		(by_axis.certainty >= LEAST_CERTAINTY &&
+		 misfit(by_axis.with_detail, sample) < misfit(by_place.with_detail, sample));
+	result.factors = is_axis ? by_axis.of_noise : by_place.of_noise;
 	std::vector<double>& factors = result.factors;
-	factors.resize(positions.size());
-	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		factors[i] = places.level_at(static_cast<Index>(i));
-	});
 	// Of the vertices that were asked: others may be fixed, and have any noise.
 	double squares = 0;
-	for (const double level : levels)
-		squares += level * level;
-	result.level = std::sqrt(squares / static_cast<double>(levels.size()));
+	for (const Index vertex : sample.vertices)
+		squares += factors[at(vertex)] * factors[at(vertex)];
+	result.level = std::sqrt(squares / static_cast<double>(sample.vertices.size()));
 	for (double& factor : factors)
 		factor = std::pow(std::max(LEAST_FACTOR, factor / result.level), result.certainty);
 	return result;

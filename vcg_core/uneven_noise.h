@@ -40,7 +40,9 @@ struct UnevenNoise {
 /// Around each of some vertices of the sample, spread over it, the level is read off the nearest
 /// ones of the same component as `estimate_noise_level` reads it off all. Features raise it too, so
 /// that it counts only where levels differ by more than these make them, and where the higher ones
-/// are noise: residuals of rings of all widths alike, and no faces in planes.
+/// are noise: residuals of rings of all widths alike, and no faces in planes. Noise along one axis
+/// (AxisNoise) is looked for as well; of both kinds the one whose levels are nearer to the
+/// residuals is taken.
 ///
 /// @param smooth #V, the surface below the noise
 /// O(#V), for a few hundred places. The same bits on any number of threads. Throws Cancelled.

@@ -666,6 +666,17 @@ TEST_CASE("Rounded coordinates are smoothed, terraces too", "[adaptive_method]")
 	}
 }
 
+TEST_CASE("How far rounded coordinates are off is told beside detail, too", "[adaptive_method]")
+{
+	// An even distribution over a step of 0.6.
+	const double deviation = 0.6 / std::sqrt(12);
+	for (const double edges : {5, 6, 8}) {
+		CAPTURE(edges);
+		const TriangleMesh mesh = rounded(bumpy_sphere(8000, edges, 1), 0.6);
+		CHECK(denoised(mesh).estimated_noise == Approx(deviation).epsilon(0.15));
+	}
+}
+
 TEST_CASE("Broad bumps survive, on large meshes too", "[adaptive_method][slow]")
 {
 	// Tried out on all of a mesh, and in places. Without, they leave 0.091 and 0.098.

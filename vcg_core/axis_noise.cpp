@@ -31,20 +31,20 @@ constexpr double LEAST_RESIDUAL = 0.02;
 constexpr double EVEN_WEIGHT = 0.005;
 
 // Squared cosines to the axis up to which the surface counts as seen edge on, and from which as
-// seen from before.
+// seen face on.
 constexpr double EDGE_ON = 0.1;
-constexpr double BEFORE = 0.6;
+constexpr double FACE_ON = 0.6;
 
 // Shares of the vertices that each of both has to have, for nothing and for all.
 constexpr double FEW = 0.07;
 constexpr double ENOUGH = 0.1;
 
-// How many times the level edge on is the one from before, for nothing and for all: detail makes it
+// How many times the level edge on is the one face on, for nothing and for all: detail makes it
 // up to 1.5 on clean meshes, or more where it is other than the following asks.
 constexpr double EVEN = 1.55;
 constexpr double UNEVEN = 1.8;
 
-// What there is more from before has to be noise, the same over three and four rings as over two,
+// What there is more face on has to be noise, the same over three and four rings as over two,
 // but for what curvature adds: growth of the square, for all and for nothing. Less than the same
 // tells that detail hides it.
 constexpr std::array<double, 2> NOISE_GROWS = {1.35, 1.55};
@@ -177,27 +177,27 @@ AxisNoise find_axis_noise(
 		return {};
 	Group edge_on;
 	Group between_both;
-	Group before;
+	Group face_on;
 	for (std::size_t i = 0; i < normals.size(); ++i) {
 		if (normals[i].isZero(0))
 			continue;
 		const double cosine = normals[i].dot(result.axis);
 		const double square = cosine * cosine;
-		Group& group = square < EDGE_ON ? edge_on : square > BEFORE ? before : between_both;
+		Group& group = square < EDGE_ON ? edge_on : square > FACE_ON ? face_on : between_both;
 		group.add(i, square, sample);
 	}
 	const auto share = [&](const Group& group) {
 		return static_cast<double>(group.vertices.size()) / static_cast<double>(normals.size());
 	};
-	result.certainty = way_between(FEW, ENOUGH, std::min(share(edge_on), share(before)));
+	result.certainty = way_between(FEW, ENOUGH, std::min(share(edge_on), share(face_on)));
 	if (result.certainty == 0)
 		return {};
 	const std::array<double, 3> low = edge_on.squares(sample.edge_length);
-	const std::array<double, 3> high = before.squares(sample.edge_length);
+	const std::array<double, 3> high = face_on.squares(sample.edge_length);
 	const double more = high[0] - low[0];
 	if (!(more > 0))
 		return {};
-	const double rise = more / (before.mean_square_cosine() - edge_on.mean_square_cosine());
+	const double rise = more / (face_on.mean_square_cosine() - edge_on.mean_square_cosine());
 	const double rest = std::max(0.0, low[0] - rise * edge_on.mean_square_cosine());
 	// Levels below the least there is to remove are all alike.
 	const double least = std::max(LEAST_NOISE, std::sqrt(low[0]));
@@ -215,8 +215,8 @@ AxisNoise find_axis_noise(
 	if (result.certainty == 0)
 		return {};
 	result.certainty *=
-		1 -
-		share_drawn(workspace, positions, before.vertices, std::sqrt(high[0]) * sample.edge_length);
+		1 - share_drawn(
+				workspace, positions, face_on.vertices, std::sqrt(high[0]) * sample.edge_length);
 	const double white = share_of_noise(edge_on.variances);
 	result.along = std::sqrt(rise);
 	result.beside = std::sqrt(white * rest);

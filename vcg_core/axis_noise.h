@@ -35,8 +35,7 @@ struct AxisNoise {
 /// does and detail does not.
 ///
 /// @param normals one a vertex of the sample: of the surface below the noise, or zero
-/// O(#V) time for a sample that grows with it. The same bits on any number of threads. Throws
-/// Cancelled.
+/// O(#sample) time. The same bits on any number of threads. Throws Cancelled.
 AxisNoise find_axis_noise(
 	const Workspace& workspace,
 	const std::vector<Point>& positions,

@@ -61,10 +61,13 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 		noise.correlation.share = 0;
 		certainty = 0;
 	}
-	// What a polynomial over two rings follows of such noise, one over more does not. How far
-	// coordinates are off that were rounded is known; what grows beyond that is detail.
-	double rough = levels.rounding > 0 ? levels.flat : levels.rough;
-	if (noise.correlation.share > 0 && !(levels.rounding > 0))
+	// How far coordinates are off that were rounded is known; what grows beyond that is detail.
+	// What a polynomial over two rings follows of other noise that goes together, one over more
+	// does not.
+	double rough = levels.rough;
+	if (levels.rounding > 0 && options.noise_type != NoiseType::Scanner)
+		rough = levels.flat;
+	else if (noise.correlation.share > 0)
 		rough = std::max(rough, narrow_level);
 	// Noise that goes together over several edges grows with the rings as detail does.
 	const double white = noise.outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;

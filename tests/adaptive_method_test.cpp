@@ -406,6 +406,7 @@ TEST_CASE("Noise that was smoothed is found and goes", "[adaptive_method][slow]"
 {
 	const SmoothedNoise noise(make_part(40000), 1);
 	noise.check_removed(0.15, 0.35, 0.6);
+	CHECK(noise.after.relative_vertex_error < 0.06);
 	CHECK(noise.after.mean_angle < 0.6 * angle_after(noise.mesh, NoiseType::White, noise.truth));
 	CHECK(noise.after.folded_faces < noise.truth.face_count() / 5000);
 }

@@ -73,16 +73,17 @@ Terms terms_of(const Point& n)
 }
 
 // The direction in which the variances are highest; zero where none tells.
-Point longest_axis(
-	const std::vector<Point>& normals, const std::vector<ResidualVariance>& variances)
+Point longest_axis(const std::vector<Point>& normals, const NoiseSample& sample)
 {
 	std::vector<Terms> terms;
 	std::vector<double> values;
-	for (std::size_t i = 0; i < normals.size(); ++i) {
-		if (variances[i].value < 0 || normals[i].isZero(0))
+	for (std::size_t i = 0; i < sample.vertices.size(); ++i) {
+		const Point& normal = normals[at(sample.vertices[i])];
+		const double variance = sample.whole[0][i].value;
+		if (variance < 0 || normal.isZero(0))
 			continue;
-		terms.push_back(terms_of(normals[i]));
-		values.push_back(variances[i].value);
+		terms.push_back(terms_of(normal));
+		values.push_back(variance);
 	}
 	std::vector<double> sorted = values;
 	const double median = quantile(sorted, 0.5);
@@ -156,11 +157,10 @@ double certainty_within(double nothing, double low, double high, double none, do
 
 } // namespace
 
-double AxisNoise::square_at(const Point& normal, bool with_detail) const
+double AxisNoise::level_along(const Point& normal) const
 {
 	const double cosine = normal.dot(axis);
-	const double square = beside * beside + along * along * cosine * cosine;
-	return with_detail ? square + detail * detail : square;
+	return std::sqrt(beside * beside + along * along * cosine * cosine);
 }
 
 AxisNoise find_axis_noise(
@@ -172,22 +172,24 @@ AxisNoise find_axis_noise(
 	if (sample.vertices.size() < FEWEST_VERTICES || !(sample.edge_length > 0))
 		return {};
 	AxisNoise result;
-	result.axis = longest_axis(normals, sample.whole[0]);
+	result.axis = longest_axis(normals, sample);
 	if (result.axis.isZero(0))
 		return {};
 	Group edge_on;
 	Group between_both;
 	Group face_on;
-	for (std::size_t i = 0; i < normals.size(); ++i) {
-		if (normals[i].isZero(0))
+	for (std::size_t i = 0; i < sample.vertices.size(); ++i) {
+		const Point& normal = normals[at(sample.vertices[i])];
+		if (normal.isZero(0))
 			continue;
-		const double cosine = normals[i].dot(result.axis);
+		const double cosine = normal.dot(result.axis);
 		const double square = cosine * cosine;
 		Group& group = square < EDGE_ON ? edge_on : square > FACE_ON ? face_on : between_both;
 		group.add(i, square, sample);
 	}
 	const auto share = [&](const Group& group) {
-		return static_cast<double>(group.vertices.size()) / static_cast<double>(normals.size());
+		return static_cast<double>(group.vertices.size()) /
+			   static_cast<double>(sample.vertices.size());
 	};
 	result.certainty = way_between(FEW, ENOUGH, std::min(share(edge_on), share(face_on)));
 	if (result.certainty == 0)

@@ -23,8 +23,8 @@ struct AxisNoise {
 	/// What detail as small as the triangles leaves beside both.
 	double detail = 0;
 
-	/// The square of what the noise is along a unit normal, with the detail or without.
-	double square_at(const Point& normal, bool with_detail) const;
+	/// Deviation of the noise along a unit normal.
+	double level_along(const Point& normal) const;
 };
 
 /// Looks for noise along one axis.
@@ -34,7 +34,7 @@ struct AxisNoise {
 /// taken if variances rise along it as they should, by as much over rings of all widths, as noise
 /// does and detail does not.
 ///
-/// @param normals one a vertex of the sample: of the surface below the noise, or zero
+/// @param normals #V of the surface below the noise, or zero
 /// O(#sample) time. The same bits on any number of threads. Throws Cancelled.
 AxisNoise find_axis_noise(
 	const Workspace& workspace,

@@ -262,19 +262,17 @@ double certainty_of_noise(
 		}
 	}
 	const double level = std::sqrt(squares / static_cast<double>(vertices.size()));
-	return way_between(OUTLYING, INLYING, sample.median_ratio) *
-		   way_between(DETAILED, WHITE, share_of_noise(variances)) *
+	return way_between(DETAILED, WHITE, share_of_noise(variances)) *
 		   (1 - share_drawn(workspace, positions, vertices, level * sample.edge_length));
 }
 
-/// The levels that the noise would have if it were of one kind.
+/// The levels that the noise would have if it were of one kind, in mean edge lengths.
 struct Levels {
 	double certainty = 0;
-	/// At the vertices of the sample, in mean edge lengths; with the detail, which tells how well
-	/// they are what was read there.
-	std::vector<double> with_detail;
-	/// #V.
+	/// #V; empty where it is not certain enough.
 	std::vector<double> of_noise;
+	/// What detail leaves everywhere beside it.
+	double detail = 0;
 };
 
 // By what is read around places.
@@ -293,8 +291,7 @@ Levels levels_by_place(
 	if (Contrast(places.levels()).certainty() == 0)
 		return result;
 	places.read(1);
-	std::vector<double>& levels = result.with_detail;
-	levels.resize(sample.vertices.size());
+	std::vector<double> levels(sample.vertices.size());
 	workspace.execution.for_each(static_cast<Index>(levels.size()), [&](std::size_t i) {
 		levels[i] = places.level_at(sample.vertices[i]);
 	});
@@ -319,31 +316,30 @@ Levels levels_by_axis(
 	const std::vector<Point>& normals,
 	const NoiseSample& sample)
 {
-	std::vector<Point> of_sample;
-	of_sample.reserve(sample.vertices.size());
-	for (const Index vertex : sample.vertices)
-		of_sample.push_back(normals[at(vertex)]);
-	const AxisNoise noise = find_axis_noise(workspace, positions, of_sample, sample);
+	const AxisNoise noise = find_axis_noise(workspace, positions, normals, sample);
 	Levels result;
-	result.certainty = way_between(OUTLYING, INLYING, sample.median_ratio) * noise.certainty;
+	result.certainty = noise.certainty;
+	result.detail = noise.detail;
 	if (result.certainty < LEAST_CERTAINTY)
 		return result;
-	for (const Point& normal : of_sample)
-		result.with_detail.push_back(std::sqrt(noise.square_at(normal, true)));
-	for (const Point& normal : normals)
-		result.of_noise.push_back(std::sqrt(noise.square_at(normal, false)));
+	result.of_noise.resize(normals.size());
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		result.of_noise[i] = noise.level_along(normals[i]);
+	});
 	return result;
 }
 
 // How far what was read at the vertices of the sample is from the levels: mean size of the
 // logarithm.
-double misfit(const std::vector<double>& levels, const NoiseSample& sample)
+double misfit(const Levels& levels, const NoiseSample& sample)
 {
 	double sum = 0;
 	double count = 0;
-	for (std::size_t i = 0; i < levels.size(); ++i) {
+	for (std::size_t i = 0; i < sample.vertices.size(); ++i) {
 		const double variance = sample.whole[0][i].value;
-		const double square = levels[i] * levels[i] * sample.edge_length * sample.edge_length;
+		const double level = levels.of_noise[at(sample.vertices[i])];
+		const double square = (level * level + levels.detail * levels.detail) * sample.edge_length *
+							  sample.edge_length;
 		if (!(variance > 0 && square > 0))
 			continue;
 		sum += std::abs(std::log(variance / square));
@@ -360,21 +356,21 @@ UnevenNoise find_uneven_noise(
 	const std::vector<Point>& smooth,
 	const NoiseSample& sample)
 {
-	if (!(sample.edge_length > 0))
+	const double without_outliers = way_between(OUTLYING, INLYING, sample.median_ratio);
+	if (!(sample.edge_length > 0) || without_outliers == 0)
 		return {};
 	const std::vector<Point> normals = vertex_normals(workspace, smooth);
-	const Levels by_place = levels_by_place(workspace, positions, smooth, normals, sample);
-	const Levels by_axis = levels_by_axis(workspace, positions, normals, sample);
+	Levels by_place = levels_by_place(workspace, positions, smooth, normals, sample);
+	Levels by_axis = levels_by_axis(workspace, positions, normals, sample);
 	UnevenNoise result;
-	result.certainty = std::max(by_place.certainty, by_axis.certainty);
+	result.certainty = without_outliers * std::max(by_place.certainty, by_axis.certainty);
 	if (result.certainty < LEAST_CERTAINTY)
 		return {};
 	const bool is_axis =
-		by_place.certainty < LEAST_CERTAINTY ||
-		(by_axis.certainty >= LEAST_CERTAINTY &&
-		 misfit(by_axis.with_detail, sample) < misfit(by_place.with_detail, sample));
-	result.factors = is_axis ? by_axis.of_noise : by_place.of_noise;
+		by_place.of_noise.empty() ||
+		(!by_axis.of_noise.empty() && misfit(by_axis, sample) < misfit(by_place, sample));
 	std::vector<double>& factors = result.factors;
+	factors = std::move(is_axis ? by_axis.of_noise : by_place.of_noise);
 	// Of the vertices that were asked: others may be fixed, and have any noise.
 	double squares = 0;
 	for (const Index vertex : sample.vertices)

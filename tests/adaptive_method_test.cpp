@@ -423,6 +423,47 @@ TEST_CASE(
 	}
 }
 
+TEST_CASE("Noise that was hardly smoothed goes", "[adaptive_method][slow]")
+{
+	for (const std::string name : {"sphere", "torus", "part", "thin_plate"}) {
+		CAPTURE(name);
+		const TriangleMesh truth = find_recipe(name).make(8000);
+		const TriangleMesh mesh = hardly_smoothed(noisy(truth, 0.3));
+		const DenoiseResult result = denoised(mesh);
+		CHECK(result.resolved.noise_type == NoiseType::Scanner);
+		const ErrorMeasures before = measure(mesh, truth);
+		const ErrorMeasures after = measure(with_positions(mesh, result.positions), truth);
+		CAPTURE(before.mean_angle, after.mean_angle);
+		CHECK(after.mean_angle < 0.18 * before.mean_angle);
+		CHECK(after.mean_angle < 0.75 * angle_after(mesh, NoiseType::White, truth));
+		CHECK(after.vertex_error < 0.35 * before.vertex_error);
+		CHECK(after.folded_faces == 0);
+	}
+}
+
+TEST_CASE("What is taken of noise alone is all of it", "[adaptive_method][slow]")
+{
+	// A part of it once stayed, lest detail should go along.
+	const TriangleMesh torus = make_torus(8000);
+	const SmoothedNoise noise(torus, 1);
+	noise.check_removed(0.15, 0.15, 0.45);
+	CHECK(noise.after.mean_angle < 1.1 * angle_after(noise.mesh, NoiseType::Scanner, torus));
+}
+
+TEST_CASE(
+	"Noise that was smoothed is tried out in places of a large mesh", "[adaptive_method][slow]")
+{
+	const TriangleMesh truth = make_torus(120000);
+	const TriangleMesh mesh = hardly_smoothed(noisy(truth, 0.3));
+	const DenoiseResult result = denoised(mesh);
+	CHECK(result.resolved.noise_type == NoiseType::Scanner);
+	const double before = measure(mesh, truth).mean_angle;
+	const double after = measure(with_positions(mesh, result.positions), truth).mean_angle;
+	CAPTURE(before, after);
+	CHECK(after < 0.1 * before);
+	CHECK(denoised(noisy(truth, 0.2)).resolved.noise_type == NoiseType::White);
+}
+
 TEST_CASE(
 	"Ripples fainter than the noise that counts go where they are certain",
 	"[adaptive_method][slow]")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "denoise.h"
+#include "prefilter.h"
 #include "step_fixture.h"
 
 #include <algorithm>
@@ -110,6 +111,15 @@ with_correlated_noise(const TriangleMesh& truth, double sigma, int smoothing_ste
 	for (std::size_t i = 0; i < offsets.size(); ++i)
 		mesh.positions[i] += factor * offsets[i];
 	return mesh;
+}
+
+/// What a single pair of Taubin smoothing leaves of a mesh and its noise.
+inline TriangleMesh hardly_smoothed(const TriangleMesh& mesh)
+{
+	const StepFixture f(mesh);
+	TriangleMesh result = mesh;
+	taubin_smooth(f.workspace, 1, result.positions);
+	return result;
 }
 
 /// Detail from a few edges to many all over a surface, the wider the higher, as the roughness of

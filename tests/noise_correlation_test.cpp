@@ -281,6 +281,36 @@ TEST_CASE("Noise that was smoothed more rises steeply and bends", "[noise_correl
 	}
 }
 
+TEST_CASE("What a trial takes decides where residuals do not", "[noise_correlation][slow]")
+{
+	const CorrelatedMoves of_noise = {1.13, 1.2, 0.35};
+	const CorrelatedMoves of_hardly_smoothed_noise = {1.1, 1.18, 0.12};
+	const CorrelatedMoves of_white_noise = {1.08, 1.14, 0.02};
+	const CorrelatedMoves of_detail = {1.35, 1.9, 0.5};
+	for (const TriangleMesh& clean : {make_torus(8000), make_part(12000)}) {
+		CAPTURE(clean.face_count());
+		CHECK(measured(clean).worth_trying() == 0);
+		for (const double sigma : {0.05, 0.2, 0.4})
+			CHECK(measured(noisy(clean, sigma)).worth_trying() == 0);
+		const NoiseCorrelation smoothed = measured(with_correlated_noise(clean, 0.15, 1));
+		CHECK(smoothed.worth_trying() > 0.9);
+		CHECK(smoothed.by_trial(of_noise) > 0.9);
+		const NoiseCorrelation hardly = measured(hardly_smoothed(noisy(clean, 0.3)));
+		CHECK(hardly.by_rise().certainty == 0);
+		CHECK(hardly.worth_trying() > 0.8);
+		CHECK(hardly.by_trial(of_hardly_smoothed_noise) > 0.8);
+		// That would have been smoothed more.
+		CHECK(hardly.by_trial({1.13, 1.2, 0.5}) == 0);
+		for (const NoiseCorrelation& found : {smoothed, hardly}) {
+			CHECK(found.by_trial(of_white_noise) == 0);
+			CHECK(found.by_trial(of_detail) == 0);
+		}
+	}
+	// Detail that is the same all over is taken alike, and goes together.
+	for (const TriangleMesh& rough : {with_relief(make_sphere(20000)), bumpy_sphere(12000, 8, 0.3)})
+		CHECK(measured(noisy(rough, 0.1)).by_trial(of_noise) == 0);
+}
+
 TEST_CASE("Size, place, turn and order do not matter to the kind of noise", "[noise_correlation]")
 {
 	const TriangleMesh mesh = with_correlated_noise(depth_image(), 0.3, 2);

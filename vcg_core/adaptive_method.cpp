@@ -4,6 +4,7 @@
 #include "adaptive_plan.h"
 #include "adaptive_run.h"
 #include "broad_detail.h"
+#include "correlated_moves.h"
 #include "detail.h"
 #include "final_smoothing.h"
 #include "interpolation.h"
@@ -67,6 +68,24 @@ AdaptivePlan plan_at(
 	AdaptivePlan plan = plan_for(options, level * planned_for, correlation);
 	plan.noise = level;
 	return plan;
+}
+
+// What the method takes as if noise of that level were of that correlation: of a mesh of many faces
+// in places. The same whatever options a user sets.
+CorrelatedMoves
+try_correlated(const Workspace& workspace, double level, const Correlation& correlation)
+{
+	const auto taken = [&](const Workspace& its_workspace, const auto& inner) {
+		const double scale = workspace.mean_edge_length / its_workspace.mean_edge_length;
+		const AdaptivePlan plan = plan_for({}, scale * level, correlation);
+		std::vector<Point> positions = its_workspace.mesh.positions;
+		run_adaptively(its_workspace, plan, {}, positions);
+		return measure_correlated_moves(its_workspace, positions, inner);
+	};
+	if (workspace.mesh.face_count() <= MOST_PROBED)
+		return taken(workspace, std::vector<std::uint8_t>());
+	const MeshPart part = cut_out_places(workspace);
+	return taken(Workspace(part.mesh, workspace.execution), part.inner);
 }
 
 // Runs the method at that level of the noise, strength included, from the workspace's mesh on.
@@ -169,8 +188,11 @@ void lower_and_run(
 	};
 	double& level = *result.resolved.noise_level;
 	std::optional<AdaptiveRun> last = run(strength * level);
-	if (noise.correlation.share > 0)
+	if (noise.correlation.share > 0) {
+		if (last)
+			give_back_uneven(workspace, noise.correlation.share, positions);
 		return;
+	}
 	if (!options.noise_level && last && last->taken.predicted > DETAIL) {
 		// The level is the same at any strength.
 		if (strength != 1)
@@ -255,7 +277,7 @@ void run_adaptive_method(
 	DenoiseResult& result,
 	std::vector<Point>& positions)
 {
-	const MeshNoise noise = estimate_mesh_noise(workspace, options);
+	const MeshNoise noise = estimate_mesh_noise(workspace, options, try_correlated);
 	// Where outliers make the noise, these are most of it.
 	Spikes spikes;
 	if (noise.outliers.share < 0.5 && options.noise_level.value_or(1) > NEGLIGIBLE_NOISE)
@@ -268,7 +290,8 @@ void run_adaptive_method(
 	mesh.positions = std::move(spikes.positions);
 	const Workspace without(mesh, workspace.execution);
 	positions = mesh.positions;
-	run_for(estimate_mesh_noise(without, options), without, options, result, positions);
+	const MeshNoise left = estimate_mesh_noise(without, options, try_correlated);
+	run_for(left, without, options, result, positions);
 	result.spikes = static_cast<Index>(spikes.vertices.size());
 	if (result.status == DenoiseResult::Status::NothingToDo)
 		result.status = DenoiseResult::Status::Done;

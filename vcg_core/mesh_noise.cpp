@@ -20,23 +20,23 @@ constexpr double COARSE_ROUNDING = 0.2;
 
 } // namespace
 
-MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& options)
+MeshNoise estimate_mesh_noise(
+	const Workspace& workspace, const DenoiseOptions& options, const CorrelationTrial& trial)
 {
 	workspace.execution.begin_phase(0.05, 0.08, "estimating the noise");
 	const std::vector<Point>& measured = workspace.mesh.positions;
 	const std::vector<Point> smooth = surface_below_heights(workspace, measured);
 	const NoiseLevels levels = estimate_noise_levels(workspace, measured, smooth);
 	MeshNoise noise;
+	NoiseCorrelation found;
 	NoiseCorrelation::ByRise by_rise;
-	double narrow_level = 0;
 	double deviation = 0;
 	// Noise that differs from place to place looks as if it went together, but not the other way
 	// round.
 	const double even = 1 - levels.uneven.certainty;
 	if (options.noise_type != NoiseType::White) {
 		const bool scanner = options.noise_type == NoiseType::Scanner;
-		const NoiseCorrelation found =
-			measure_noise_correlation(workspace, measured, smooth, scanner);
+		found = measure_noise_correlation(workspace, measured, smooth, scanner);
 		noise.correlation = {scanner ? 1 : even * found.certainty(), found.reach()};
 		if (levels.rounding > 0 && !scanner)
 			noise.correlation.share = way_between(FINE_ROUNDING, COARSE_ROUNDING, levels.rounding);
@@ -44,7 +44,6 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 			by_rise = found.by_rise();
 			deviation = found.deviation();
 		}
-		narrow_level = found.narrow_level;
 	}
 	workspace.execution.begin_phase(0.08, 0.1, "looking for outliers");
 	// Beside a clean part noise looks like outliers, and so does noise that is strong and
@@ -52,6 +51,15 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 	if (noise.correlation.share < 0.5 && levels.uneven.certainty < 0.5)
 		noise.outliers = repair_outliers(workspace, levels);
 	const double counts = even * (1 - noise.outliers.share);
+	// What a polynomial over two rings follows of noise that goes together, one over more does not.
+	double rough = std::max(levels.rough, found.narrow_level);
+	const bool is_told = noise.correlation.share >= 1 || by_rise.share >= 1 || levels.rounding > 0;
+	if (!is_told && counts * found.worth_trying() > 0) {
+		const double by_trial =
+			found.by_trial(trial(workspace, rough, {1, noise.correlation.reach}));
+		by_rise.certainty = std::max(by_rise.certainty, by_trial);
+		by_rise.share = std::max(by_rise.share, by_trial);
+	}
 	double certainty = std::max(noise.correlation.share, counts * by_rise.certainty);
 	noise.correlation.share = std::max(noise.correlation.share, counts * by_rise.share);
 	if (noise.correlation.share >= 0.5)
@@ -62,13 +70,10 @@ MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& 
 		certainty = 0;
 	}
 	// How far coordinates are off that were rounded is known; what grows beyond that is detail.
-	// What a polynomial over two rings follows of other noise that goes together, one over more
-	// does not.
-	double rough = levels.rough;
 	if (levels.rounding > 0 && options.noise_type != NoiseType::Scanner)
 		rough = levels.flat;
-	else if (noise.correlation.share > 0)
-		rough = std::max(rough, narrow_level);
+	else if (noise.correlation.share == 0)
+		rough = levels.rough;
 	// Noise that goes together over several edges grows with the rings as detail does.
 	const double white = noise.outliers.share > 0 ? levels.flat : (1 - levels.drawn) * levels.flat;
 	const auto level_for = [&](double correlated, double share) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "correlated_moves.h"
 #include "denoise.h"
 #include "outliers.h"
 #include "uneven_noise.h"
 #include "workspace.h"
+
+#include <functional>
 
 namespace orthopoly {
 
@@ -33,8 +36,16 @@ struct MeshNoise {
 	double rounding = 0;
 };
 
+/// What a run of a method takes from a workspace's mesh as if its noise, of that level in mean edge
+/// lengths, were of that correlation.
+using CorrelationTrial = std::function<CorrelatedMoves(
+	const Workspace& workspace, double level, const Correlation& correlation)>;
+
 /// Estimates the noise of the workspace's mesh. Of the options, what noise the user says there is
-/// decides what is looked for. Reports progress from 0.05 to 0.1; throws Cancelled. O(#V) time.
-MeshNoise estimate_mesh_noise(const Workspace& workspace, const DenoiseOptions& options);
+/// decides what is looked for. Where it may go together over several edges and residuals alone do
+/// not say so for certain, it is tried out. Reports progress from 0.05 to 0.1, but for a trial's;
+/// throws Cancelled. O(#V) time, and what a trial takes.
+MeshNoise estimate_mesh_noise(
+	const Workspace& workspace, const DenoiseOptions& options, const CorrelationTrial& trial);
 
 } // namespace orthopoly

@@ -118,7 +118,6 @@ constexpr Ramp ALIKE_NEAR = {1.17, 1.13};
 constexpr Ramp CORRELATED_NEAR = {0.110, 0.135};
 constexpr Ramp RISES_NEAR = {0.85, 1.00};
 constexpr Ramp NOT_STEEPEST_NEAR = {2.50, 2.30};
-constexpr double LESS_STEEPLY = 2.0 / 3;
 constexpr Ramp BENDS_NEAR = {0.22, 0.14};
 constexpr Ramp MOSTLY_NOISE = {2.00, 1.75};
 constexpr Ramp STRONG_NEAR = {0.012, 0.020};
@@ -129,6 +128,33 @@ constexpr Ramp BELOW_FEATURES_NEAR = {0.20, 0.16};
 // and 0.86 of the vertex error, 0.7 leaves 0.71 and 0.79, 0.9 leaves 0.64 and 0.80, all of it 0.63
 // and 0.84, and more than the noise on detailed ones.
 constexpr double SHARE_ANYWHERE = 0.8;
+
+// Where it can be tried out what a run for such noise takes, residuals need not be alike, and those
+// of many rings may be the shape's; nor do they have to rise quite as those of noise on plain
+// ground. What is taken of noise goes together by 0.3 to 0.75, rough ground as far or further.
+constexpr Ramp HARDLY_STEEPER_NEAR = {2.55, 2.40};
+constexpr Ramp HARDLY_STRAIGHTER_NEAR = {0.26, 0.20};
+constexpr Ramp TAKEN_TOGETHER = {0.20, 0.28};
+constexpr Ramp NOT_ALTOGETHER = {0.80, 0.72};
+
+// Noise that one or two pairs of Taubin smoothing went over goes together but a little, in what is
+// taken (0.09 to 0.16 and 0.24 to 0.32; white noise up to 0.03 where it is taken alike) as in the
+// residuals (0.04 to 0.08 and 0.09 to 0.13), which rise up to three rings by 0.62 to 1.0 and then
+// by less than two thirds of that; those of white noise do by 0.4 to 0.6. On detail that is the
+// same all over they rise by more, go together and are taken alike; but then they rise further,
+// too: by 0.03 more than two thirds where there are bumps of six edges, by 0.07 and more on rough
+// ground.
+constexpr Ramp RISES_A_LITTLE = {0.60, 0.64};
+constexpr Ramp NOT_CLEARLY = {1.25, 1.05};
+constexpr Ramp BENDS_A_LITTLE = {0.05, 0.01};
+constexpr Ramp HARDLY_FURTHER = {1.50, 1.30};
+constexpr Ramp CORRELATED_A_LITTLE = {0.030, 0.038};
+constexpr Ramp BELOW_FEATURES_SLIGHTLY = {0.36, 0.31};
+constexpr Ramp TAKEN_A_LITTLE_TOGETHER = {0.08, 0.10};
+constexpr Ramp NO_MORE_TOGETHER = {0.36, 0.31};
+
+// White noise that is taken for correlated by a little is worse off than the other way round.
+constexpr Ramp MORE_THAN_A_LITTLE = {0.2, 1.0};
 
 // What the deviation is more than middle polynomials leave, per squared correlation along edges.
 // They leave 0.9 of noise that an umbrella step smoothed, whose correlation is 0.2, 0.73 to 0.9 of
@@ -207,6 +233,15 @@ double first_rise(const std::vector<Residuals>& found)
 		NARROW_RINGS);
 }
 
+double near_rise(const std::vector<Residuals>& found)
+{
+	return rise(
+		at_share(found, &Residuals::narrowest, VERY_FLATTEST),
+		NARROWEST_RINGS,
+		at_share(found, &Residuals::near, VERY_FLATTEST),
+		NEAR_RINGS);
+}
+
 // The mean over the flattest places, as that deviation tells them.
 double mean_in_flattest(
 	const std::vector<Residuals>& found, double Residuals::*deviation, double Residuals::*value)
@@ -244,7 +279,6 @@ double irregularity_of_view(const std::vector<Point>& positions, const std::vect
 
 NoiseCorrelation::Near near_of(const std::vector<Residuals>& found, double edge_length)
 {
-	const double narrowest = at_share(found, &Residuals::narrowest, VERY_FLATTEST);
 	const double near = at_share(found, &Residuals::near, VERY_FLATTEST);
 	const double narrow = at_share(found, &Residuals::narrow, VERY_FLATTEST);
 	NoiseCorrelation::Near result;
@@ -255,12 +289,18 @@ NoiseCorrelation::Near near_of(const std::vector<Residuals>& found, double edge_
 	result.unevenness = at_share(found, &Residuals::near, 0.5) / near;
 	result.edge_correlation =
 		mean_in_flattest(found, &Residuals::near, &Residuals::near_correlation);
-	result.rise = rise(narrowest, NARROWEST_RINGS, near, NEAR_RINGS);
+	result.rise = near_rise(found);
 	result.next_rise = rise(near, NEAR_RINGS, narrow, NARROW_RINGS);
 	return result;
 }
 
 } // namespace
+
+double NoiseCorrelation::Near::bend() const
+{
+	// Of the power of three rings, what noise leaves to four.
+	return next_rise - 2.0 / 3 * rise;
+}
 
 double NoiseCorrelation::certainty() const
 {
@@ -281,13 +321,41 @@ NoiseCorrelation::ByRise NoiseCorrelation::by_rise() const
 	const double more = RISES_STEEPLY(first_rise) * NOT_STEEPEST(first_rise) * BENDS_CLEARLY(bend) *
 						CORRELATED_CLEARLY(edge_correlation) * ALIKE(narrow_spread) *
 						STRONG_BY_STEEP_RISE(middle_level) * WELL_BELOW_FEATURES(middle_level);
-	const double anywhere =
-		std::max(ALIKE_EVERYWHERE(near.unevenness), ALIKE_NEAR(near.spread)) *
-		CORRELATED_NEAR(near.edge_correlation) * RISES_NEAR(near.rise) *
-		NOT_STEEPEST_NEAR(near.rise) * BENDS_NEAR(near.next_rise - LESS_STEEPLY * near.rise) *
-		MOSTLY_NOISE(further_rise) * STRONG_NEAR(near.level) * BELOW_FEATURES_NEAR(near.level);
+	const double anywhere = std::max(ALIKE_EVERYWHERE(near.unevenness), ALIKE_NEAR(near.spread)) *
+							MOSTLY_NOISE(further_rise) * NOT_STEEPEST_NEAR(near.rise) *
+							BENDS_NEAR(near.bend()) * looks_smoothed();
 	return {
 		std::max({little, more, anywhere}), std::max({little, more, SHARE_ANYWHERE * anywhere})};
+}
+
+double NoiseCorrelation::looks_smoothed() const
+{
+	return CORRELATED_NEAR(near.edge_correlation) * RISES_NEAR(near.rise) *
+		   HARDLY_STEEPER_NEAR(near.rise) * HARDLY_STRAIGHTER_NEAR(near.bend()) *
+		   STRONG_NEAR(near.level) * BELOW_FEATURES_NEAR(near.level);
+}
+
+double NoiseCorrelation::looks_hardly_smoothed() const
+{
+	return CORRELATED_A_LITTLE(near.edge_correlation) * RISES_A_LITTLE(near.rise) *
+		   NOT_CLEARLY(near.rise) * BENDS_A_LITTLE(near.bend()) * HARDLY_FURTHER(further_rise) *
+		   STRONG_NEAR(near.level) * BELOW_FEATURES_SLIGHTLY(near.level);
+}
+
+double NoiseCorrelation::worth_trying() const
+{
+	return std::max(looks_smoothed(), looks_hardly_smoothed());
+}
+
+double NoiseCorrelation::by_trial(const CorrelatedMoves& taken) const
+{
+	const double clearly =
+		TAKEN_TOGETHER(taken.edge_correlation) * NOT_ALTOGETHER(taken.edge_correlation);
+	const double slightly =
+		TAKEN_A_LITTLE_TOGETHER(taken.edge_correlation) * NO_MORE_TOGETHER(taken.edge_correlation);
+	const double together =
+		std::max(clearly * looks_smoothed(), slightly * looks_hardly_smoothed());
+	return MORE_THAN_A_LITTLE(taken.are_alike() * together);
 }
 
 double NoiseCorrelation::is_of_voxels() const
@@ -333,14 +401,15 @@ NoiseCorrelation measure_noise_correlation(
 	};
 	measure([](LocalHeights& local, Index vertex, Residuals& residuals) {
 		residuals.narrowest = deviation(local, vertex, NARROWEST_RINGS);
-		residuals.narrow = deviation(local, vertex, NARROW_RINGS);
-	});
-	if (!in_any_case && !shows_origin && RISES(first_rise(found)) == 0)
-		return result;
-	measure([](LocalHeights& local, Index vertex, Residuals& residuals) {
 		residuals.near = deviation(local, vertex, NEAR_RINGS);
 		if (residuals.near >= 0)
 			residuals.near_correlation = local.edge_correlation();
+		residuals.narrow = deviation(local, vertex, NARROW_RINGS);
+	});
+	const bool rises = RISES(first_rise(found)) > 0 || RISES_A_LITTLE(near_rise(found)) > 0;
+	if (!in_any_case && !shows_origin && !rises)
+		return result;
+	measure([](LocalHeights& local, Index vertex, Residuals& residuals) {
 		residuals.correlated = deviation(local, vertex, CORRELATED_RINGS);
 		if (residuals.correlated >= 0)
 			residuals.correlation = local.edge_correlation();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "correlated_moves.h"
 #include "voxel_grid.h"
 #include "workspace.h"
 
@@ -55,6 +56,9 @@ struct NoiseCorrelation {
 		/// it goes on by to four.
 		double rise = 0;
 		double next_rise = 0;
+
+		/// How much more it rises then than noise does, where it rises by as much before.
+		double bend() const;
 	};
 	Near near = {};
 	/// Residual deviation of wide polynomials at an ordinary place over that in the flattest ones:
@@ -79,6 +83,10 @@ struct NoiseCorrelation {
 		double share = 0;
 	};
 	ByRise by_rise() const;
+	/// The same by what a run for such noise took from the mesh, which tells it from detail better
+	/// than any residuals do; and from 0 to 1 how far the residuals make it worth trying one.
+	double by_trial(const CorrelatedMoves& taken) const;
+	double worth_trying() const;
 	/// From 0 to 1: how surely the mesh was extracted from a volume, whatever its noise.
 	double is_of_voxels() const;
 	/// Of the noise along the normals, in mean edge lengths, where it is correlated: more than any
@@ -86,6 +94,10 @@ struct NoiseCorrelation {
 	double deviation() const;
 	/// How far the noise goes together, from 0 (over an edge or two) to 1 (over many).
 	double reach() const;
+
+private:
+	double looks_smoothed() const;
+	double looks_hardly_smoothed() const;
 };
 
 /// Measures the noise of the positions. Where the mesh comes neither from a depth camera nor from a

@@ -448,6 +448,9 @@ TEST_CASE("What is taken of noise alone is all of it", "[adaptive_method][slow]"
 	const SmoothedNoise noise(torus, 1);
 	noise.check_removed(0.15, 0.15, 0.45);
 	CHECK(noise.after.mean_angle < 1.1 * angle_after(noise.mesh, NoiseType::Scanner, torus));
+	const TriangleMesh rippled = with_correlated_noise(torus, 0.04, 1);
+	const double before = measure(rippled, torus).mean_angle;
+	CHECK(errors_of(rippled, torus).mean_angle < 0.25 * before);
 }
 
 TEST_CASE(

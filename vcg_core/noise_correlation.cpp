@@ -131,9 +131,13 @@ constexpr double SHARE_ANYWHERE = 0.8;
 
 // Where it can be tried out what a run for such noise takes, residuals need not be alike, and those
 // of many rings may be the shape's; nor do they have to rise quite as those of noise on plain
-// ground. What is taken of noise goes together by 0.3 to 0.75, rough ground as far or further.
+// ground. Faint ripples of reconstructed points go together a little less. What is taken of noise
+// goes together by 0.3 to 0.75, rough ground as far or further.
 constexpr Ramp HARDLY_STEEPER_NEAR = {2.55, 2.40};
 constexpr Ramp HARDLY_STRAIGHTER_NEAR = {0.26, 0.20};
+constexpr Ramp HARDLY_FAINT_NEAR = {0.008, 0.013};
+constexpr Ramp RIPPLES = {0.060, 0.045};
+constexpr Ramp CORRELATED_RIPPLES = {0.070, 0.088};
 constexpr Ramp TAKEN_TOGETHER = {0.20, 0.28};
 constexpr Ramp NOT_ALTOGETHER = {0.80, 0.72};
 
@@ -322,17 +326,22 @@ NoiseCorrelation::ByRise NoiseCorrelation::by_rise() const
 						CORRELATED_CLEARLY(edge_correlation) * ALIKE(narrow_spread) *
 						STRONG_BY_STEEP_RISE(middle_level) * WELL_BELOW_FEATURES(middle_level);
 	const double anywhere = std::max(ALIKE_EVERYWHERE(near.unevenness), ALIKE_NEAR(near.spread)) *
-							MOSTLY_NOISE(further_rise) * NOT_STEEPEST_NEAR(near.rise) *
-							BENDS_NEAR(near.bend()) * looks_smoothed();
+							CORRELATED_NEAR(near.edge_correlation) * RISES_NEAR(near.rise) *
+							NOT_STEEPEST_NEAR(near.rise) * BENDS_NEAR(near.bend()) *
+							MOSTLY_NOISE(further_rise) * STRONG_NEAR(near.level) *
+							BELOW_FEATURES_NEAR(near.level);
 	return {
 		std::max({little, more, anywhere}), std::max({little, more, SHARE_ANYWHERE * anywhere})};
 }
 
 double NoiseCorrelation::looks_smoothed() const
 {
-	return CORRELATED_NEAR(near.edge_correlation) * RISES_NEAR(near.rise) *
-		   HARDLY_STEEPER_NEAR(near.rise) * HARDLY_STRAIGHTER_NEAR(near.bend()) *
-		   STRONG_NEAR(near.level) * BELOW_FEATURES_NEAR(near.level);
+	const double correlated = std::max(
+		CORRELATED_NEAR(near.edge_correlation),
+		RIPPLES(near.level) * CORRELATED_RIPPLES(near.edge_correlation));
+	return correlated * RISES_NEAR(near.rise) * HARDLY_STEEPER_NEAR(near.rise) *
+		   HARDLY_STRAIGHTER_NEAR(near.bend()) * HARDLY_FAINT_NEAR(near.level) *
+		   BELOW_FEATURES_NEAR(near.level);
 }
 
 double NoiseCorrelation::looks_hardly_smoothed() const

@@ -220,30 +220,30 @@ double at_share(const std::vector<Residuals>& found, double Residuals::*deviatio
 	return values.empty() ? 0 : quantile(values, share);
 }
 
-// The power of the rings that the residual deviation rises by. None where a clean mesh leaves none.
-double rise(double few, int few_rings, double many, int many_rings)
+// The power of the rings that the residual deviation in the flattest tenth of the places rises by.
+// None where a clean mesh leaves none.
+double rise(
+	const std::vector<Residuals>& found,
+	double Residuals::*few,
+	int few_rings,
+	double Residuals::*many,
+	int many_rings)
 {
-	if (!(few > 0 && many > 0))
+	const double from = at_share(found, few, VERY_FLATTEST);
+	const double to = at_share(found, many, VERY_FLATTEST);
+	if (!(from > 0 && to > 0))
 		return 0;
-	return std::log(many / few) / std::log(static_cast<double>(many_rings) / few_rings);
+	return std::log(to / from) / std::log(static_cast<double>(many_rings) / few_rings);
 }
 
 double first_rise(const std::vector<Residuals>& found)
 {
-	return rise(
-		at_share(found, &Residuals::narrowest, VERY_FLATTEST),
-		NARROWEST_RINGS,
-		at_share(found, &Residuals::narrow, VERY_FLATTEST),
-		NARROW_RINGS);
+	return rise(found, &Residuals::narrowest, NARROWEST_RINGS, &Residuals::narrow, NARROW_RINGS);
 }
 
 double near_rise(const std::vector<Residuals>& found)
 {
-	return rise(
-		at_share(found, &Residuals::narrowest, VERY_FLATTEST),
-		NARROWEST_RINGS,
-		at_share(found, &Residuals::near, VERY_FLATTEST),
-		NEAR_RINGS);
+	return rise(found, &Residuals::narrowest, NARROWEST_RINGS, &Residuals::near, NEAR_RINGS);
 }
 
 // The mean over the flattest places, as that deviation tells them.
@@ -284,7 +284,6 @@ double irregularity_of_view(const std::vector<Point>& positions, const std::vect
 NoiseCorrelation::Near near_of(const std::vector<Residuals>& found, double edge_length)
 {
 	const double near = at_share(found, &Residuals::near, VERY_FLATTEST);
-	const double narrow = at_share(found, &Residuals::narrow, VERY_FLATTEST);
 	NoiseCorrelation::Near result;
 	if (!(near > 0))
 		return result;
@@ -294,7 +293,7 @@ NoiseCorrelation::Near near_of(const std::vector<Residuals>& found, double edge_
 	result.edge_correlation =
 		mean_in_flattest(found, &Residuals::near, &Residuals::near_correlation);
 	result.rise = near_rise(found);
-	result.next_rise = rise(near, NEAR_RINGS, narrow, NARROW_RINGS);
+	result.next_rise = rise(found, &Residuals::near, NEAR_RINGS, &Residuals::narrow, NARROW_RINGS);
 	return result;
 }
 
@@ -446,11 +445,8 @@ NoiseCorrelation measure_noise_correlation(
 	result.middle_growth = at_share(found, &Residuals::middle, FLATTEST) / narrow;
 	result.unevenness = at_share(found, &Residuals::wide, 0.5) / wide;
 	result.first_rise = first_rise(found);
-	result.further_rise = rise(
-		at_share(found, &Residuals::narrow, VERY_FLATTEST),
-		NARROW_RINGS,
-		at_share(found, &Residuals::wide, VERY_FLATTEST),
-		WIDE_RINGS);
+	result.further_rise =
+		rise(found, &Residuals::narrow, NARROW_RINGS, &Residuals::wide, WIDE_RINGS);
 	result.narrow_spread = narrow / at_share(found, &Residuals::narrow, VERY_FLATTEST);
 	const double edge = mean_edge_length(workspace, smooth);
 	result.near = near_of(found, edge);

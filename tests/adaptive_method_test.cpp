@@ -709,6 +709,10 @@ TEST_CASE("Rounded coordinates are smoothed, terraces too", "[adaptive_method]")
 			result.resolved.noise_type ==
 			(bound.step > 0.7 ? NoiseType::Scanner : NoiseType::White));
 	}
+	// What is taken of terraces differs from plane to plane, and stays off.
+	const TriangleMesh part = make_part(12000);
+	const TriangleMesh terraced = rounded(part, 1.0);
+	CHECK(errors_of(terraced, part).mean_angle < 0.66 * measure(terraced, part).mean_angle);
 }
 
 TEST_CASE("How far rounded coordinates are off is told beside detail, too", "[adaptive_method]")

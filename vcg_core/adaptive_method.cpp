@@ -189,7 +189,8 @@ void lower_and_run(
 	double& level = *result.resolved.noise_level;
 	std::optional<AdaptiveRun> last = run(strength * level);
 	if (noise.correlation.share > 0) {
-		if (last)
+		// What rounding leaves is not alike everywhere: nothing on planes along an axis.
+		if (last && noise.rounding == 0)
 			give_back_uneven(workspace, noise.correlation.share, positions);
 		return;
 	}

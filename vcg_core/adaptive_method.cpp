@@ -70,17 +70,30 @@ AdaptivePlan plan_at(
 	return plan;
 }
 
+// A level in edge lengths of one mesh, in those of a part of it.
+double level_in(const Workspace& part, const Workspace& whole, double level)
+{
+	return level * (whole.mean_edge_length / part.mean_edge_length);
+}
+
+// What the method makes of a mesh.
+std::vector<Point>
+denoised(const Workspace& workspace, const AdaptivePlan& plan, const std::vector<double>& factors)
+{
+	std::vector<Point> positions = workspace.mesh.positions;
+	run_adaptively(workspace, plan, factors, positions);
+	return positions;
+}
+
 // What the method takes as if noise of that level were of that correlation: of a mesh of many faces
 // in places. The same whatever options a user sets.
 CorrelatedMoves
 try_correlated(const Workspace& workspace, double level, const Correlation& correlation)
 {
 	const auto taken = [&](const Workspace& its_workspace, const auto& inner) {
-		const double scale = workspace.mean_edge_length / its_workspace.mean_edge_length;
-		const AdaptivePlan plan = plan_for({}, scale * level, correlation);
-		std::vector<Point> positions = its_workspace.mesh.positions;
-		run_adaptively(its_workspace, plan, {}, positions);
-		return measure_correlated_moves(its_workspace, positions, inner);
+		const double its_level = level_in(its_workspace, workspace, level);
+		const AdaptivePlan plan = plan_for({}, its_level, correlation);
+		return measure_correlated_moves(its_workspace, denoised(its_workspace, plan, {}), inner);
 	};
 	if (workspace.mesh.face_count() <= MOST_PROBED)
 		return taken(workspace, std::vector<std::uint8_t>());
@@ -130,19 +143,15 @@ void finish(
 	std::vector<Point>& positions)
 {
 	const double planned_for = factor_planned_for(factors);
-	const auto denoised = [&](const Workspace& its_workspace, const auto& its_factors) {
-		// Levels are in edge lengths, which differ.
-		const double scale = workspace.mean_edge_length / its_workspace.mean_edge_length;
-		const AdaptivePlan plan = plan_at(scale * level, planned_for, {}, options);
-		std::vector<Point> result = its_workspace.mesh.positions;
-		run_adaptively(its_workspace, plan, its_factors, result);
-		return result;
+	const auto result_of = [&](const Workspace& its_workspace, const auto& its_factors) {
+		const double its_level = level_in(its_workspace, workspace, level);
+		return denoised(its_workspace, plan_at(its_level, planned_for, {}, options), its_factors);
 	};
 	const auto responses_to =
 		[&](const Probe& probe, TriangleMesh mesh, const auto& its_factors, const auto& plain) {
 			mesh.positions = probe.with_probe();
 			const Workspace probed(mesh, workspace.execution);
-			return probe.responses(plain, denoised(probed, its_factors));
+			return probe.responses(plain, result_of(probed, its_factors));
 		};
 	if (workspace.mesh.face_count() <= MOST_PROBED) {
 		const Probe probe(workspace, {sigma, factors}, positions);
@@ -157,7 +166,7 @@ void finish(
 	const MeshPart part = cut_out_places(workspace);
 	const std::vector<double> part_factors = part.values_of(factors);
 	const Workspace part_workspace(part.mesh, workspace.execution);
-	std::vector<Point> part_positions = denoised(part_workspace, part_factors);
+	std::vector<Point> part_positions = result_of(part_workspace, part_factors);
 	const Probe probe(part_workspace, {sigma, part_factors}, part_positions);
 	const std::vector<Point> responses =
 		responses_to(probe, part.mesh, part_factors, part_positions);

@@ -33,15 +33,6 @@ constexpr double TOO_MUCH_FAR_SPREAD = 0.3;
 constexpr double NOISE_ALONE = 0.2;
 constexpr double UNEVEN = 4;
 
-// #V mean squares of the moves around each vertex.
-std::vector<double> squares_around(const Workspace& workspace, std::vector<double> moves)
-{
-	for (double& move : moves)
-		move *= move;
-	average(workspace, SQUARE_AVERAGES, moves);
-	return moves;
-}
-
 // #V moves along the normals, in mean edge lengths.
 std::vector<double> moves_in_edges(const Workspace& workspace, const std::vector<Point>& positions)
 {
@@ -81,7 +72,7 @@ CorrelatedMoves measure_correlated_moves(
 	const std::vector<std::uint8_t>& inner)
 {
 	const std::vector<double> moves = moves_in_edges(workspace, positions);
-	const std::vector<double> squares = squares_around(workspace, moves);
+	const std::vector<double> squares = mean_squares(workspace, SQUARE_AVERAGES, moves);
 	std::vector<double> counted = where_moved(squares, moves, inner);
 	CorrelatedMoves result;
 	const double low = quantile(counted, NOISE_ALONE);
@@ -111,13 +102,11 @@ CorrelatedMoves measure_correlated_moves(
 void give_back_uneven(const Workspace& workspace, double most, std::vector<Point>& positions)
 {
 	const std::vector<double> moves = moves_in_edges(workspace, positions);
-	const std::vector<double> squares = squares_around(workspace, moves);
+	const std::vector<double> squares = mean_squares(workspace, SQUARE_AVERAGES, moves);
 	std::vector<double> counted = where_moved(squares, moves);
 	const double noise = UNEVEN * quantile(counted, NOISE_ALONE);
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		if (squares[i] > noise && !workspace.mesh.is_fixed(static_cast<Index>(i)))
-			positions[i] +=
-				most * (1 - noise / squares[i]) * (workspace.mesh.positions[i] - positions[i]);
+		give_back(workspace, i, most * share_beyond(noise, squares[i]), positions);
 	});
 }
 

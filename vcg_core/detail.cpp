@@ -161,20 +161,6 @@ give_back_ridges(const Workspace& workspace, const Deviations& sigma, std::vecto
 	return taken;
 }
 
-// The share of a variance that noise of another does not account for.
-double share_of_detail(double noise, double variance)
-{
-	return variance > MARGIN * noise ? 1 - MARGIN * noise / variance : 0;
-}
-
-// Takes a vertex a share of the way back to where it was measured.
-void give_back(
-	const Workspace& workspace, std::size_t i, double share, std::vector<Point>& positions)
-{
-	if (share > 0 && !workspace.mesh.is_fixed(static_cast<Index>(i)))
-		positions[i] += share * (workspace.mesh.positions[i] - positions[i]);
-}
-
 } // namespace
 
 TakenMoves give_back_detail(
@@ -183,14 +169,12 @@ TakenMoves give_back_detail(
 	std::vector<Point> given = positions;
 	give_back_common(workspace, sigma, given);
 	const TakenMoves taken = give_back_ridges(workspace, sigma, given);
-	std::vector<double> squares = moves_along_normals(workspace, sigma, given).lengths;
-	for (double& move : squares)
-		move *= move;
-	average(workspace, SQUARE_AVERAGES, squares);
+	const std::vector<double> squares = mean_squares(
+		workspace, SQUARE_AVERAGES, moves_along_normals(workspace, sigma, given).lengths);
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
 		if (workspace.mesh.is_fixed(static_cast<Index>(i)))
 			return;
-		give_back(workspace, i, share_of_detail(1, squares[i]), given);
+		give_back(workspace, i, share_beyond(MARGIN, squares[i]), given);
 		positions[i] += most * (given[i] - positions[i]);
 	});
 	return taken;
@@ -220,7 +204,7 @@ void give_back_inliers(
 					std::max(LEAST_DISTANCE * edge, quantile(around, 0.5)));
 				const double inlying = way_between(OUTLYING, INLYING, distances[at(i)] / ordinary);
 				const double deviation = DEVIATION_PER_MEDIAN * ordinary;
-				const double detail = share_of_detail(sigma * sigma, deviation * deviation);
+				const double detail = share_beyond(MARGIN * (sigma * sigma), deviation * deviation);
 				give_back(workspace, at(i), most * inlying * detail, positions);
 			}
 		});

@@ -49,4 +49,26 @@ Moves moves_beside_edges(
 	return moves;
 }
 
+double share_beyond(double noise, double square)
+{
+	return square > noise ? 1 - noise / square : 0;
+}
+
+void give_back(
+	const Workspace& workspace, std::size_t vertex, double share, std::vector<Point>& positions)
+{
+	if (share > 0 && !workspace.mesh.is_fixed(static_cast<Index>(vertex)))
+		positions[vertex] += share * (workspace.mesh.positions[vertex] - positions[vertex]);
+}
+
+std::vector<double>
+mean_squares(const Workspace& workspace, int times, const std::vector<double>& values)
+{
+	std::vector<double> squares = values;
+	for (double& value : squares)
+		value *= value;
+	average(workspace, times, squares);
+	return squares;
+}
+
 } // namespace orthopoly

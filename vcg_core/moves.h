@@ -28,6 +28,14 @@ Moves moves_along_normals(
 Moves moves_beside_edges(
 	const Workspace& workspace, const Deviations& sigma, const std::vector<Point>& positions);
 
+/// The share of a mean square that is not noise of that variance, as a Wiener filter has it: 0
+/// to 1.
+double share_beyond(double noise, double square);
+
+/// Takes a vertex, unless it is fixed, that share of the way back to where it was measured.
+void give_back(
+	const Workspace& workspace, std::size_t vertex, double share, std::vector<Point>& positions);
+
 /// Takes means of #V values over each vertex and its neighbours, these weighed by the faces shared,
 /// so many times.
 template<class Value>
@@ -54,6 +62,10 @@ void average(const Workspace& workspace, int times, std::vector<Value>& values)
 		});
 	}
 }
+
+/// Means of the squares of #V values: so many averages.
+std::vector<double>
+mean_squares(const Workspace& workspace, int times, const std::vector<double>& values);
 
 /// Keeps what is broad of #V values: so many pairs of Taubin's filter (see prefilter.h).
 template<class Value>

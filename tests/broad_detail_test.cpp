@@ -29,7 +29,7 @@ struct Probed {
 			f(mesh), positions(smoothed(mesh, pairs)),
 			probe(f.workspace, {NOISE * f.workspace.mean_edge_length, factors}, positions),
 			detail(f.workspace, probe, positions),
-			with_probe(with_positions(mesh, probe.with_probe())),
+			with_probe(with_positions(mesh, probe.with_probe(positions))),
 			share(followed(smoothed(with_probe, pairs)))
 	{
 	}
@@ -64,7 +64,7 @@ double vertex_error(const TriangleMesh& truth, const std::vector<Point>& positio
 TEST_CASE("The probe tells what a method follows of noise", "[broad_detail]")
 {
 	const TriangleMesh mesh = noisy(make_sphere(8000), NOISE);
-	double last = 1;
+	double last = 2;
 	for (const double pairs : {5, 20, 80, 320}) {
 		const Probed probed(mesh, pairs);
 		CAPTURE(pairs);
@@ -72,20 +72,24 @@ TEST_CASE("The probe tells what a method follows of noise", "[broad_detail]")
 		last = probed.share;
 	}
 	CHECK(Probed(mesh, 5).share > 0.85);
-	// Sum of squares over sum of the filter's own response.
-	CHECK(Probed(mesh, 30).share == Approx(0.73).margin(0.06));
-	CHECK(last < 0.5);
+	// Sum of squares over sum of the filter's own response, and a tenth more for what a method
+	// follows of a mesh beyond its result.
+	CHECK(Probed(mesh, 30).share == Approx(1.1 * 0.73).margin(0.06));
+	CHECK(last < 0.7);
 	const Probed probed(mesh, 20);
 	CHECK(probed.followed(probed.positions) == 0);
 	// A method that leaves all as it is follows all there is.
 	const std::vector<Point>& measured = mesh.positions;
-	CHECK(
-		probed.detail.share_followed(probed.probe.responses(
-			measured, probed.with_probe.positions)) == Approx(1).margin(1e-3));
-	// Half the noise each way, along the normals.
+	const std::vector<Point> with_probe = probed.probe.with_probe(measured);
+	CHECK(probed.detail.share_followed(probed.probe.responses(measured, with_probe)) == 1);
+	// The noise each way along the normals, and across them where vertices were measured.
+	const double edge = probed.f.workspace.mean_edge_length;
 	for (std::size_t i = 0; i < measured.size(); ++i) {
-		const double distance = (probed.with_probe.positions[i] - measured[i]).norm();
-		REQUIRE(distance == Approx(0.5 * NOISE * probed.f.workspace.mean_edge_length));
+		const Point& normal = probed.probe.normals()[i];
+		const Point move = probed.with_probe.positions[i] - probed.positions[i];
+		REQUIRE(std::abs(move.dot(normal)) == Approx(NOISE * edge));
+		const Point from_measured = probed.with_probe.positions[i] - measured[i];
+		REQUIRE((from_measured - from_measured.dot(normal) * normal).norm() < 1e-9 * edge);
 	}
 }
 
@@ -113,14 +117,13 @@ TEST_CASE("Broad detail is given back where noise differs from place to place", 
 	const std::vector<double> factors = share_at_vertices(bumpy, ramp);
 	const Probed probed(unevenly_noisy(bumpy, NOISE, ramp), 320, factors);
 	for (std::size_t i = 0; i < factors.size(); ++i) {
-		const double distance =
-			(probed.with_probe.positions[i] - probed.f.mesh.positions[i]).norm();
+		const Point move = probed.with_probe.positions[i] - probed.positions[i];
 		const double noise = factors[i] * NOISE * probed.f.workspace.mean_edge_length;
-		REQUIRE(distance == Approx(0.5 * noise));
+		REQUIRE(std::abs(move.dot(probed.probe.normals()[i])) == Approx(noise));
 	}
-	CHECK(
-		probed.detail.share_followed(probed.probe.responses(
-			probed.f.mesh.positions, probed.with_probe.positions)) == Approx(1).margin(1e-3));
+	const std::vector<Point>& measured = probed.f.mesh.positions;
+	const std::vector<Point> with_probe = probed.probe.with_probe(measured);
+	CHECK(probed.detail.share_followed(probed.probe.responses(measured, with_probe)) == 1);
 	const double before = vertex_error(bumpy, probed.positions);
 	CHECK(vertex_error(bumpy, probed.given_back()) < 0.75 * before);
 	// What is but higher than thought by a seventh is no detail, if levels are such as differ.
@@ -143,7 +146,7 @@ TEST_CASE(
 	const double sigma = NOISE * f.workspace.mean_edge_length;
 	std::vector<Point> positions = here.positions;
 	const Probe probe(f.workspace, sigma, positions);
-	CHECK(same_bits(probe.with_probe(), here.with_probe.positions));
+	CHECK(same_bits(probe.with_probe(positions), here.with_probe.positions));
 	const BroadDetail detail(f.workspace, probe, positions);
 	detail.give_back(here.share, positions);
 	CHECK(same_bits(positions, expected));

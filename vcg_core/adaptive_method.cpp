@@ -149,7 +149,7 @@ void finish(
 	};
 	const auto responses_to =
 		[&](const Probe& probe, TriangleMesh mesh, const auto& its_factors, const auto& plain) {
-			mesh.positions = probe.with_probe();
+			mesh.positions = probe.with_probe(plain);
 			const Workspace probed(mesh, workspace.execution);
 			return probe.responses(plain, result_of(probed, its_factors));
 		};

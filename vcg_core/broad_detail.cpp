@@ -15,6 +15,10 @@ namespace {
 // not more by as much; 40 less of the detail.
 constexpr int PAIRS = 30;
 
+// What a method follows of the noise of a mesh, over what it follows on its own result, which lacks
+// the detail that it took.
+constexpr double OF_MESH = 1.1;
+
 // Averages that gains are reckoned over: some two hundred vertices. These alone tell them to within
 // 0.3, too little, so that those of all count with the weight of so many such surroundings.
 constexpr int AVERAGES = 40;
@@ -66,7 +70,7 @@ double BroadDetail::share_followed(
 				   kept_[i][1] * probe_.bounded_response(responses, i) / probe_.noise().factor(i) :
 				   0.0;
 	});
-	return kept > 0 ? std::max(0.0, std::min(1.0, followed / kept)) : 0;
+	return kept > 0 ? std::max(0.0, std::min(1.0, OF_MESH * followed / kept)) : 0;
 }
 
 BroadDetail::Products BroadDetail::products(std::size_t vertex) const

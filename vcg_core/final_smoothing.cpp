@@ -6,25 +6,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace orthopoly {
 
 namespace {
 
-// Pairs of the filter where surfaces have detail; and those where they hardly have, the most first,
-// for where twice all of the smoothing would not be too much.
-constexpr int PAIRS = 3;
-constexpr int WIDE_PAIRS[] = {20, 10};
-constexpr double WIDE_SHARE = 2;
+// Pairs of the filter to choose from: a few where surfaces have detail, many where they hardly
+// have.
+constexpr int PAIRS[] = {1, 3, 10, 20};
 
-// Shares up to which nothing is smoothed, and from which all of the share is: the probe, which is
-// no small one, makes them a fifth too large, and a little smoothing turns the faces beside edges
-// by more than it gains elsewhere, where all are flat.
-constexpr double SHARE_OF_EDGES = 0.3;
-constexpr double SHARE_OF_DETAIL = 0.5;
+// A method has it easier with its own result than with the mesh, which it does not follow as far:
+// what it leaves there is 1.5 to 2.5 times what it leaves of the probe.
+constexpr double UNDERSTATED = 1.5;
 
-// The estimate's terms go together over some edges, so that their sum is by so much less certain
-// than that of as many terms of no relation: 1.5 to 2 measured by summing over blocks.
+// Shares up to which nothing is smoothed, and from which all of the share is: a little smoothing
+// turns the faces beside edges by more than it gains elsewhere, where all are flat.
+constexpr double SHARE_OF_EDGES = 0.2;
+constexpr double SHARE_OF_DETAIL = 0.4;
+
+// The terms of what goes by what was taken go together over some edges, so that their sum is by so
+// much less certain than that of as many terms of no relation: 1.5 to 2 measured by summing over
+// blocks.
 constexpr double RELATED_TERMS = 2;
 
 // #V positions after the filter, less those before.
@@ -57,36 +60,50 @@ double sum_over_edges(
 	});
 }
 
-// The square of the overall deviation of the noise as it differs over edges: the given one, or less
-// where less was taken than the responses say, since the noise of neighbouring vertices goes
-// together.
-double variance_of(
+// The variance of the noise as it differs over edges, in that of the probe: less than that where
+// less was taken than of the probe, since the noise of neighbouring vertices goes together.
+double variance_over_edges(
 	const Workspace& workspace,
 	const Probe& probe,
-	const std::vector<Point>& responses,
-	const std::vector<double>& moves,
+	const std::vector<double>& taken,
+	const std::vector<double>& left,
 	const std::vector<std::uint8_t>& inner)
 {
-	const double taken = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
-		const double difference = moves[a] - moves[b];
+	const double squares = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
+		const double difference = taken[a] - taken[b];
 		return difference * difference;
 	});
-	// Of the probe, if the method is a filter, or if what it follows are choices.
-	const double filtered = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
-		const auto left = [&](std::size_t i) {
-			return probe.noise_at(i) - probe.bounded_response(responses, i);
-		};
-		const double difference = left(a) - left(b);
+	const double of_probe = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
+		const double noise = probe.noise().overall() * (probe.noise_at(a) - probe.noise_at(b));
+		const double difference = noise - (left[a] - left[b]);
 		return difference * difference;
 	});
-	const double chosen = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
-		const double noise = probe.noise_at(a) - probe.noise_at(b);
-		const auto response = [&](std::size_t i) { return responses[i].dot(probe.normals()[i]); };
-		return noise * (noise - (response(a) - response(b)));
+	return of_probe > 0 ? std::min(1.0, squares / of_probe) : 1;
+}
+
+// Takes back the moves of vertices whose faces are turned over by them; false where none is.
+bool take_back_folds(
+	const Workspace& workspace, const std::vector<Point>& before, std::vector<Point>& positions)
+{
+	const std::vector<Face>& faces = workspace.mesh.faces;
+	std::vector<std::uint8_t> turned(faces.size());
+	workspace.execution.for_each(workspace.mesh.face_count(), [&](std::size_t i) {
+		const Point cross = face_cross_product(before, faces[i]);
+		turned[i] = cross.dot(face_cross_product(positions, faces[i])) < 0 ? 1 : 0;
 	});
-	const double told = std::min(filtered, chosen);
-	const double variance = probe.noise().overall() * probe.noise().overall();
-	return told > 0 ? std::min(variance, taken / told) : variance;
+	std::vector<std::uint8_t> back(positions.size());
+	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		const IndexLists& around = workspace.vertex_faces;
+		const auto vertex = static_cast<Index>(i);
+		const bool turns = std::any_of(around.begin(vertex), around.end(vertex), [&](Index face) {
+			return turned[at(face)] != 0;
+		});
+		if (turns && positions[i] != before[i]) {
+			positions[i] = before[i];
+			back[i] = 1;
+		}
+	});
+	return std::any_of(back.begin(), back.end(), [](std::uint8_t flag) { return flag != 0; });
 }
 
 } // namespace
@@ -99,45 +116,59 @@ FinalSmoothing choose_smoothing(
 	const std::vector<std::uint8_t>& inner)
 {
 	const std::vector<Point>& normals = probe.normals();
-	std::vector<double> moves(positions.size());
+	const double sigma = probe.noise().overall();
+	// Along the normals what was taken and what of the probe was left, and the result of that.
+	std::vector<double> taken(positions.size());
+	std::vector<double> left(positions.size());
+	std::vector<Point> probed = positions;
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		moves[i] = (workspace.mesh.positions[i] - positions[i]).dot(normals[i]);
+		taken[i] = (workspace.mesh.positions[i] - positions[i]).dot(normals[i]);
+		left[i] = sigma * responses[i].dot(normals[i]);
+		probed[i] += sigma * responses[i];
 	});
-	const double variance = variance_of(workspace, probe, responses, moves, inner);
-	// The share of the smoothing that leaves the least, less what of it may be chance.
-	const auto certain_share = [&](int pairs) {
-		std::vector<double> heights(positions.size());
-		std::vector<double> follows(positions.size());
+	const double variance = variance_over_edges(workspace, probe, taken, left, inner);
+	FinalSmoothing best;
+	double most = 0;
+	for (const int pairs : PAIRS) {
 		const std::vector<Point> away = smoothed_away(workspace, pairs, positions);
-		const std::vector<Point> responses_away = smoothed_away(workspace, pairs, responses);
-		workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-			heights[i] = away[i].dot(normals[i]);
-			follows[i] = responses_away[i].dot(normals[i]);
-		});
-		const auto product = [&](std::size_t a, std::size_t b) {
-			return (heights[a] - heights[b]) * (moves[a] - moves[b]) -
-				   variance * (probe.noise_at(a) - probe.noise_at(b)) * (follows[a] - follows[b]);
+		const std::vector<Point> away_probed = smoothed_away(workspace, pairs, probed);
+		const auto along_edge = [&](const std::vector<Point>& moves, std::size_t a, std::size_t b) {
+			return moves[a].dot(normals[a]) - moves[b].dot(normals[b]);
 		};
 		const auto square = [&](std::size_t a, std::size_t b) {
-			return (heights[a] - heights[b]) * (heights[a] - heights[b]);
+			const double move = along_edge(away, a, b);
+			return move * move;
 		};
 		const double squares = sum_over_edges(workspace, inner, square);
 		if (!(squares > 0))
-			return 0.0;
-		const double likely = sum_over_edges(workspace, inner, product) / squares;
+			continue;
+		const double of_probe = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
+			return along_edge(away_probed, a, b) * (left[b] - left[a]);
+		});
+		const auto product = [&](std::size_t a, std::size_t b) {
+			const double move = along_edge(away, a, b);
+			const double noise = sigma * (probe.noise_at(a) - probe.noise_at(b));
+			return move * (taken[a] - taken[b]) -
+				   variance * noise * (along_edge(away_probed, a, b) - move);
+		};
+		const double of_taken = sum_over_edges(workspace, inner, product);
 		// Edges between two faces are met twice.
 		const double scatter = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
-			const double rest = product(a, b) - likely * square(a, b);
+			const double rest = product(a, b) - of_taken / squares * square(a, b);
 			return 2 * rest * rest;
 		});
-		return likely - RELATED_TERMS * std::sqrt(scatter) / squares;
-	};
-	for (const int pairs : WIDE_PAIRS) {
-		if (certain_share(pairs) >= WIDE_SHARE)
-			return {pairs, 1};
+		const double certain = of_taken - RELATED_TERMS * std::sqrt(scatter);
+		const double of_own = certain >= squares ? certain : 0;
+		const double least = std::max(UNDERSTATED * of_probe, of_own) / squares;
+		const double share = way_between(SHARE_OF_EDGES, SHARE_OF_DETAIL, least) *
+							 std::max(0.0, std::min(1.0, least));
+		const double gain = share * (2 * least - share) * squares;
+		if (gain > most) {
+			most = gain;
+			best = {pairs, share};
+		}
 	}
-	const double share = std::min(1.0, certain_share(PAIRS));
-	return {PAIRS, way_between(SHARE_OF_EDGES, SHARE_OF_DETAIL, share) * std::max(0.0, share)};
+	return best;
 }
 
 void smooth_finally(
@@ -147,10 +178,13 @@ void smooth_finally(
 		return;
 	const std::vector<Point> away = smoothed_away(workspace, smoothing.pairs, positions);
 	const std::vector<Point> normals = vertex_normals(workspace, positions);
+	std::vector<Point> smoothed = positions;
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
 		if (!workspace.mesh.is_fixed(static_cast<Index>(i)))
-			positions[i] += smoothing.share * away[i].dot(normals[i]) * normals[i];
+			smoothed[i] += smoothing.share * away[i].dot(normals[i]) * normals[i];
 	});
+	while (take_back_folds(workspace, positions, smoothed)) {}
+	positions = std::move(smoothed);
 }
 
 } // namespace orthopoly

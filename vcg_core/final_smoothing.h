@@ -19,13 +19,14 @@ struct FinalSmoothing {
 
 /// Where surfaces curve a method is left with few faces to average over, so that its result is
 /// rougher than the surface; where they have edges, smoothing costs more than it gains. This
-/// chooses what leaves the least expected square error of the vertices' distances along the
-/// normals, as they differ over the edges, which is what normals go by. The error is estimated from
-/// the measured mesh (Stein's unbiased estimate, 1981, by the probe's responses), less what of it
-/// may be chance.
+/// chooses what leaves the least square error of the vertices' distances along the normals, as they
+/// differ over the edges, which is what normals go by. There are two estimates, and the larger one
+/// of what to smooth counts: by what the method leaves of a probe, which is known, but is none of
+/// what it makes of its own, such as facets; and by what it took from the measured mesh (Stein's
+/// unbiased estimate, 1981), less what of that may be chance.
 ///
 /// @param workspace its mesh as measured
-/// @param probe     of that mesh
+/// @param probe     of the result
 /// @param responses #V of the method to the probe
 /// @param positions #V denoised
 /// @param inner     #V flags of the vertices to look at, or empty for all
@@ -36,8 +37,9 @@ FinalSmoothing choose_smoothing(
 	const std::vector<Point>& positions,
 	const std::vector<std::uint8_t>& inner = {});
 
-/// Moves the positions (#V) along their normals, in place; fixed vertices stay bit for bit. O(#V);
-/// the same bits on any number of threads. Throws Cancelled.
+/// Moves the positions (#V) along their normals, in place, unless a face is turned over by that;
+/// fixed vertices stay bit for bit. O(#V); the same bits on any number of threads. Throws
+/// Cancelled.
 void smooth_finally(
 	const Workspace& workspace, const FinalSmoothing& smoothing, std::vector<Point>& positions);
 

@@ -10,10 +10,6 @@ namespace orthopoly {
 
 namespace {
 
-// Deviations of the noise that the probe moves vertices by: enough that the method's choices, which
-// jump, average out (with a tenth they scatter five times as much), and hardly more noise than is.
-constexpr double PROBE = 0.5;
-
 // A response beyond so many times the probe is another choice of the method's, which says nothing.
 constexpr double LARGEST_RESPONSE = 2;
 
@@ -31,14 +27,16 @@ Probe::Probe(
 	}
 }
 
-std::vector<Point> Probe::with_probe() const
+std::vector<Point> Probe::with_probe(const std::vector<Point>& positions) const
 {
-	std::vector<Point> positions = workspace_.mesh.positions;
-	for (std::size_t i = 0; i < positions.size(); ++i) {
-		if (signs_[i] != 0)
-			positions[i] += PROBE * noise_[i] * signs_[i] * normals_[i];
+	std::vector<Point> probed = workspace_.mesh.positions;
+	for (std::size_t i = 0; i < probed.size(); ++i) {
+		if (signs_[i] == 0)
+			continue;
+		const double back = (positions[i] - probed[i]).dot(normals_[i]);
+		probed[i] += (back + noise_[i] * signs_[i]) * normals_[i];
 	}
-	return positions;
+	return probed;
 }
 
 std::vector<Point>
@@ -46,7 +44,7 @@ Probe::responses(const std::vector<Point>& positions, const std::vector<Point>& 
 {
 	std::vector<Point> responses(positions.size());
 	workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
-		responses[i] = (probed[i] - positions[i]) / (PROBE * noise_.overall());
+		responses[i] = (probed[i] - positions[i]) / noise_.overall();
 	});
 	return responses;
 }

@@ -8,11 +8,13 @@
 
 namespace orthopoly {
 
-/// Tells how far a method follows the noise of a mesh.
+/// Tells what a method leaves of the noise of a mesh.
 ///
-/// The method is run again with a little noise more, whose signs are known: how far its result goes
-/// along with these is the trace of its response, which is what estimates of its error need to tell
-/// the noise that it left from detail (Stein 1981; Ramani, Blu, Unser 2008).
+/// The method is run again on its own result with noise that is known, as much as was taken (a
+/// parametric bootstrap, Efron 1979). What it leaves of that, it left of the mesh's own noise about
+/// as well; and how far it goes along with the known signs is the share of the noise that it
+/// follows (as in Ramani, Blu, Unser 2008, but by all of the noise at once: a method that chooses
+/// follows a little more noise than there is otherwise).
 class Probe {
 public:
 	/// @param workspace its mesh as measured; has to outlive this
@@ -20,8 +22,9 @@ public:
 	/// @param positions #V denoised, whose normals the probe moves vertices along
 	Probe(const Workspace& workspace, const Deviations& noise, const std::vector<Point>& positions);
 
-	/// #V as measured, with the probe.
-	std::vector<Point> with_probe() const;
+	/// #V denoised, with the probe along the normals. Across these vertices are where they were
+	/// measured, so that triangles are as uneven as they were.
+	std::vector<Point> with_probe(const std::vector<Point>& positions) const;
 
 	/// #V signs; zero for fixed vertices and such without a normal, which the probe leaves alone.
 	const std::vector<double>& signs() const { return signs_; }
@@ -32,7 +35,7 @@ public:
 	/// A vertex's sign times its deviation, over the overall one.
 	double noise_at(std::size_t vertex) const { return noise_.factor(vertex) * signs_[vertex]; }
 
-	/// How far results of the method differ, in units of the probe's overall deviation: #V.
+	/// What the method leaves of the probe, in units of its overall deviation: #V.
 	///
 	/// @param positions #V denoised
 	/// @param probed    #V the same method's result for `with_probe`

@@ -158,6 +158,7 @@ FinalSmoothing choose_smoothing(
 			return 2 * rest * rest;
 		});
 		const double certain = of_taken - RELATED_TERMS * std::sqrt(scatter);
+		// Less than all of it comes about by noise that is not white, too.
 		const double of_own = certain >= squares ? certain : 0;
 		const double least = std::max(UNDERSTATED * of_probe, of_own) / squares;
 		const double share = way_between(SHARE_OF_EDGES, SHARE_OF_DETAIL, least) *

@@ -20,10 +20,10 @@ struct FinalSmoothing {
 /// Where surfaces curve a method is left with few faces to average over, so that its result is
 /// rougher than the surface; where they have edges, smoothing costs more than it gains. This
 /// chooses what leaves the least square error of the vertices' distances along the normals, as they
-/// differ over the edges, which is what normals go by. There are two estimates, and the larger one
-/// of what to smooth counts: by what the method leaves of a probe, which is known, but is none of
-/// what it makes of its own, such as facets; and by what it took from the measured mesh (Stein's
-/// unbiased estimate, 1981), less what of that may be chance.
+/// differ over the edges, which is what normals go by. The error is what the method leaves of a
+/// probe, which is known. What it makes of its own, such as facets, it would make of the probe
+/// again: that goes by what was taken from the measured mesh (Stein's unbiased estimate, 1981),
+/// where it is certain that all of the smoothing would not be too much.
 ///
 /// @param workspace its mesh as measured
 /// @param probe     of the result

@@ -30,15 +30,10 @@ constexpr double SHARE_OF_DETAIL = 0.4;
 // blocks.
 constexpr double RELATED_TERMS = 2;
 
-// #V positions after the filter, less those before.
-std::vector<Point>
-smoothed_away(const Workspace& workspace, int pairs, const std::vector<Point>& positions)
+// Keeps of #V positions what so many pairs of the filter keep, here one that does not inflate.
+void smooth(const Workspace& workspace, int pairs, std::vector<Point>& positions)
 {
-	std::vector<Point> moves = positions;
-	low_pass(workspace, pairs, moves, -TAUBIN_SHRINK);
-	workspace.execution.for_each(
-		workspace.mesh.vertex_count(), [&](std::size_t i) { moves[i] -= positions[i]; });
-	return moves;
+	low_pass(workspace, pairs, positions, -TAUBIN_SHRINK);
 }
 
 // Over the edges of a face, each edge that two faces share being met twice.
@@ -129,27 +124,34 @@ FinalSmoothing choose_smoothing(
 	const double variance = variance_over_edges(workspace, probe, taken, left, inner);
 	FinalSmoothing best;
 	double most = 0;
+	// What the pairs so far make of both results, and how far that moves vertices.
+	std::vector<Point> smoothed = positions;
+	std::vector<Point> smoothed_probed = probed;
+	std::vector<double> moves(positions.size());
+	std::vector<double> moves_probed(positions.size());
+	int done = 0;
 	for (const int pairs : PAIRS) {
-		const std::vector<Point> away = smoothed_away(workspace, pairs, positions);
-		const std::vector<Point> away_probed = smoothed_away(workspace, pairs, probed);
-		const auto along_edge = [&](const std::vector<Point>& moves, std::size_t a, std::size_t b) {
-			return moves[a].dot(normals[a]) - moves[b].dot(normals[b]);
-		};
+		smooth(workspace, pairs - done, smoothed);
+		smooth(workspace, pairs - done, smoothed_probed);
+		done = pairs;
+		workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+			moves[i] = (smoothed[i] - positions[i]).dot(normals[i]);
+			moves_probed[i] = (smoothed_probed[i] - probed[i]).dot(normals[i]);
+		});
 		const auto square = [&](std::size_t a, std::size_t b) {
-			const double move = along_edge(away, a, b);
-			return move * move;
+			return (moves[a] - moves[b]) * (moves[a] - moves[b]);
 		};
 		const double squares = sum_over_edges(workspace, inner, square);
 		if (!(squares > 0))
 			continue;
 		const double of_probe = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
-			return along_edge(away_probed, a, b) * (left[b] - left[a]);
+			return (moves_probed[a] - moves_probed[b]) * (left[b] - left[a]);
 		});
 		const auto product = [&](std::size_t a, std::size_t b) {
-			const double move = along_edge(away, a, b);
+			const double move = moves[a] - moves[b];
+			const double follows = moves_probed[a] - moves_probed[b] - move;
 			const double noise = sigma * (probe.noise_at(a) - probe.noise_at(b));
-			return move * (taken[a] - taken[b]) -
-				   variance * noise * (along_edge(away_probed, a, b) - move);
+			return move * (taken[a] - taken[b]) - variance * noise * follows;
 		};
 		const double of_taken = sum_over_edges(workspace, inner, product);
 		// Edges between two faces are met twice.
@@ -177,12 +179,14 @@ void smooth_finally(
 {
 	if (!(smoothing.share > 0))
 		return;
-	const std::vector<Point> away = smoothed_away(workspace, smoothing.pairs, positions);
-	const std::vector<Point> normals = vertex_normals(workspace, positions);
 	std::vector<Point> smoothed = positions;
+	smooth(workspace, smoothing.pairs, smoothed);
+	const std::vector<Point> normals = vertex_normals(workspace, positions);
 	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+		const Point away = smoothed[i] - positions[i];
+		smoothed[i] = positions[i];
 		if (!workspace.mesh.is_fixed(static_cast<Index>(i)))
-			smoothed[i] += smoothing.share * away[i].dot(normals[i]) * normals[i];
+			smoothed[i] += smoothing.share * away.dot(normals[i]) * normals[i];
 	});
 	while (take_back_folds(workspace, positions, smoothed)) {}
 	positions = std::move(smoothed);

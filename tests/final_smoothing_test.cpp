@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <utility>
 
 using namespace orthopoly;
 
@@ -43,6 +44,13 @@ struct Halfway {
 			positions[i] += way * (truth.positions[i] - positions[i]);
 			responses[i] *= (1 - way) * probe.noise_at(i);
 		}
+	}
+
+	/// Averages over neighbours, so that what is left of the noise is broad.
+	void make_broad()
+	{
+		for (std::vector<Point>* field : {&positions, &responses})
+			low_pass(f.workspace, 10, *field, -TAUBIN_SHRINK);
 	}
 
 	FinalSmoothing choice() const
@@ -126,6 +134,34 @@ TEST_CASE("The share of the final smoothing is that which leaves the least", "[f
 		CHECK(
 			method.errors(method.smoothed()).mean_angle <
 			method.errors(method.positions).mean_angle);
+	}
+}
+
+TEST_CASE("What is left broad is smoothed by many pairs", "[final_smoothing]")
+{
+	for (const double way : {0.5, 0.8}) {
+		CAPTURE(way);
+		Halfway method(make_sphere(20000), way);
+		method.make_broad();
+		CHECK(method.choice().pairs > 20);
+		const ErrorMeasures before = method.errors(method.positions);
+		const ErrorMeasures after = method.errors(method.smoothed());
+		CHECK(after.mean_angle < 0.4 * before.mean_angle);
+		CHECK(after.vertex_error < 0.8 * before.vertex_error);
+	}
+}
+
+TEST_CASE("Many pairs are not bought with the shape", "[final_smoothing]")
+{
+	// Bumps about as wide as the filter, which cost distances more than angles.
+	for (const auto& [edges, height] : {std::pair(26.0, 1.0), {26.0, 2.0}, {30.0, 2.0}}) {
+		CAPTURE(edges, height);
+		Halfway method(bumpy_sphere(20000, edges, height), 0.8);
+		method.make_broad();
+		const ErrorMeasures before = method.errors(method.positions);
+		const ErrorMeasures after = method.errors(method.smoothed());
+		CHECK(after.mean_angle < 0.8 * before.mean_angle);
+		CHECK(after.vertex_error < before.vertex_error);
 	}
 }
 

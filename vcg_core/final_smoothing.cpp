@@ -14,7 +14,14 @@ namespace {
 
 // Pairs of the filter to choose from: a few where surfaces have detail, many where they hardly
 // have.
-constexpr int PAIRS[] = {1, 3, 10, 20};
+constexpr int PAIRS[] = {1, 3, 10, 20, 40, 80, 160};
+
+// So many times the gain of fewer pairs is worth more: gains are not known better than that, and
+// more pairs take more of a shape.
+constexpr double WORTH_MORE = 1.05;
+
+// What more pairs than these take of a surface's shape hardly shows in differences over edges.
+constexpr int MOST_PAIRS_BY_EDGES = 20;
 
 // A method has it easier with its own result than with the mesh, which it does not follow as far:
 // what it leaves there is 1.5 to 2.5 times what it leaves of the probe.
@@ -36,45 +43,173 @@ void smooth(const Workspace& workspace, int pairs, std::vector<Point>& positions
 	low_pass(workspace, pairs, positions, -TAUBIN_SHRINK);
 }
 
-// Over the edges of a face, each edge that two faces share being met twice.
-template<class Value>
-double sum_over_edges(
-	const Workspace& workspace, const std::vector<std::uint8_t>& inner, const Value& value)
-{
-	const std::vector<Face>& faces = workspace.mesh.faces;
-	return workspace.execution.sum(workspace.mesh.face_count(), [&](Index index) {
-		const Face& face = faces[at(index)];
-		double sum = 0;
-		for (std::size_t k = 0; k < 3; ++k) {
-			const std::size_t from = at(face[k]);
-			const std::size_t to = at(face[(k + 1) % 3]);
-			if (inner.empty() || (inner[from] != 0 && inner[to] != 0))
-				sum += value(from, to);
-		}
-		return sum;
-	});
-}
+// Chooses the smoothing of a result, by what is along its normals.
+class Chooser {
+public:
+	Chooser(
+		const Workspace& workspace,
+		const Probe& probe,
+		const std::vector<Point>& responses,
+		const std::vector<Point>& positions,
+		const std::vector<std::uint8_t>& inner) :
+			workspace_(workspace),
+			probe_(probe), inner_(inner), positions_(positions), probed_(positions),
+			taken_(positions.size()), left_(positions.size()), moves_(positions.size()),
+			moves_of_probed_(positions.size())
+	{
+		const double sigma = probe.noise().overall();
+		workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+			const Point& normal = probe.normals()[i];
+			taken_[i] = (workspace.mesh.positions[i] - positions[i]).dot(normal);
+			left_[i] = sigma * responses[i].dot(normal);
+			probed_[i] += sigma * responses[i];
+		});
+	}
 
-// The variance of the noise as it differs over edges, in that of the probe: less than that where
-// less was taken than of the probe, since the noise of neighbouring vertices goes together.
-double variance_over_edges(
-	const Workspace& workspace,
-	const Probe& probe,
-	const std::vector<double>& taken,
-	const std::vector<double>& left,
-	const std::vector<std::uint8_t>& inner)
-{
-	const double squares = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
-		const double difference = taken[a] - taken[b];
-		return difference * difference;
-	});
-	const double of_probe = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
-		const double noise = probe.noise().overall() * (probe.noise_at(a) - probe.noise_at(b));
-		const double difference = noise - (left[a] - left[b]);
-		return difference * difference;
-	});
-	return of_probe > 0 ? std::min(1.0, squares / of_probe) : 1;
-}
+	FinalSmoothing choose()
+	{
+		const double variance = variance_over_edges();
+		FinalSmoothing best;
+		double most = 0;
+		std::vector<Point> smoothed = positions_;
+		std::vector<Point> smoothed_probed = probed_;
+		int done = 0;
+		for (const int pairs : PAIRS) {
+			smooth(workspace_, pairs - done, smoothed);
+			smooth(workspace_, pairs - done, smoothed_probed);
+			done = pairs;
+			set_moves(smoothed, smoothed_probed);
+			const double squares = over_edges(
+				[&](std::size_t a, std::size_t b) { return square(moves_[a] - moves_[b]); });
+			if (!(squares > 0))
+				continue;
+			const double least =
+				std::max(UNDERSTATED * least_of_probe(), least_of_own(variance, squares)) / squares;
+			double share = way_between(SHARE_OF_EDGES, SHARE_OF_DETAIL, least) *
+						   std::max(0.0, std::min(1.0, least));
+			if (pairs > MOST_PAIRS_BY_EDGES)
+				share = std::min(share, std::max(0.0, UNDERSTATED * share_by_distances()));
+			const double gain = share * (2 * least - share) * squares;
+			if (gain > WORTH_MORE * most) {
+				most = gain;
+				best = {pairs, share};
+			}
+			// What is left of less smoothing would be smoothed by more, too.
+			if (share == 0)
+				break;
+		}
+		return best;
+	}
+
+private:
+	static double square(double value) { return value * value; }
+
+	bool counts(std::size_t vertex) const { return inner_.empty() || inner_[vertex] != 0; }
+
+	// Over the edges of the faces, each edge that two faces share being met twice.
+	template<class Value>
+	double over_edges(const Value& value) const
+	{
+		const std::vector<Face>& faces = workspace_.mesh.faces;
+		return workspace_.execution.sum(workspace_.mesh.face_count(), [&](Index index) {
+			const Face& face = faces[at(index)];
+			double sum = 0;
+			for (std::size_t k = 0; k < 3; ++k) {
+				const std::size_t from = at(face[k]);
+				const std::size_t to = at(face[(k + 1) % 3]);
+				if (counts(from) && counts(to))
+					sum += value(from, to);
+			}
+			return sum;
+		});
+	}
+
+	template<class Value>
+	double over_vertices(const Value& value) const
+	{
+		return workspace_.execution.sum(workspace_.mesh.vertex_count(), [&](Index index) {
+			return counts(at(index)) ? value(at(index)) : 0.0;
+		});
+	}
+
+	// The noise of the probe, as it differs over an edge.
+	double noise(std::size_t a, std::size_t b) const
+	{
+		return probe_.noise().overall() * (probe_.noise_at(a) - probe_.noise_at(b));
+	}
+
+	// The variance of the noise as it differs over edges, in that of the probe: less than that
+	// where less was taken than of the probe, since the noise of neighbouring vertices goes
+	// together.
+	double variance_over_edges() const
+	{
+		const double squares =
+			over_edges([&](std::size_t a, std::size_t b) { return square(taken_[a] - taken_[b]); });
+		const double of_probe = over_edges([&](std::size_t a, std::size_t b) {
+			return square(noise(a, b) - (left_[a] - left_[b]));
+		});
+		return of_probe > 0 ? std::min(1.0, squares / of_probe) : 1;
+	}
+
+	// How far smoothing moves the vertices of both results.
+	void set_moves(const std::vector<Point>& smoothed, const std::vector<Point>& smoothed_probed)
+	{
+		workspace_.execution.for_each(workspace_.mesh.vertex_count(), [&](std::size_t i) {
+			const Point& normal = probe_.normals()[i];
+			moves_[i] = (smoothed[i] - positions_[i]).dot(normal);
+			moves_of_probed_[i] = (smoothed_probed[i] - probed_[i]).dot(normal);
+		});
+	}
+
+	// The share of the moves that leaves the least of the probe, times their squares.
+	double least_of_probe() const
+	{
+		return over_edges([&](std::size_t a, std::size_t b) {
+			return (moves_of_probed_[a] - moves_of_probed_[b]) * (left_[b] - left_[a]);
+		});
+	}
+
+	// The same of what the method made, by what was taken; 0 where it is not certain that this is
+	// all of the squares. Less than that comes about by noise that is not white, too.
+	double least_of_own(double variance, double squares) const
+	{
+		const auto product = [&](std::size_t a, std::size_t b) {
+			const double move = moves_[a] - moves_[b];
+			const double follows = moves_of_probed_[a] - moves_of_probed_[b] - move;
+			return move * (taken_[a] - taken_[b]) - variance * noise(a, b) * follows;
+		};
+		const double least = over_edges(product);
+		// Edges between two faces are met twice.
+		const double scatter = over_edges([&](std::size_t a, std::size_t b) {
+			const double move = moves_[a] - moves_[b];
+			return 2 * square(product(a, b) - least / squares * square(move));
+		});
+		const double certain = least - RELATED_TERMS * std::sqrt(scatter);
+		return certain >= squares ? certain : 0;
+	}
+
+	// The share that leaves the least of the probe in the distances themselves.
+	double share_by_distances() const
+	{
+		const double squares = over_vertices([&](std::size_t i) { return square(moves_[i]); });
+		const double least =
+			over_vertices([&](std::size_t i) { return -moves_of_probed_[i] * left_[i]; });
+		return squares > 0 ? least / squares : 0;
+	}
+
+	const Workspace& workspace_;
+	const Probe& probe_;
+	const std::vector<std::uint8_t>& inner_;
+	const std::vector<Point>& positions_;
+	// The result with what was left of the probe.
+	std::vector<Point> probed_;
+	// What was taken from the mesh, what was left of the probe, and what smoothing moves of either
+	// result.
+	std::vector<double> taken_;
+	std::vector<double> left_;
+	std::vector<double> moves_;
+	std::vector<double> moves_of_probed_;
+};
 
 // Takes back the moves of vertices whose faces are turned over by them; false where none is.
 bool take_back_folds(
@@ -110,68 +245,7 @@ FinalSmoothing choose_smoothing(
 	const std::vector<Point>& positions,
 	const std::vector<std::uint8_t>& inner)
 {
-	const std::vector<Point>& normals = probe.normals();
-	const double sigma = probe.noise().overall();
-	// Along the normals what was taken and what of the probe was left, and the result of that.
-	std::vector<double> taken(positions.size());
-	std::vector<double> left(positions.size());
-	std::vector<Point> probed = positions;
-	workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-		taken[i] = (workspace.mesh.positions[i] - positions[i]).dot(normals[i]);
-		left[i] = sigma * responses[i].dot(normals[i]);
-		probed[i] += sigma * responses[i];
-	});
-	const double variance = variance_over_edges(workspace, probe, taken, left, inner);
-	FinalSmoothing best;
-	double most = 0;
-	// What the pairs so far make of both results, and how far that moves vertices.
-	std::vector<Point> smoothed = positions;
-	std::vector<Point> smoothed_probed = probed;
-	std::vector<double> moves(positions.size());
-	std::vector<double> moves_probed(positions.size());
-	int done = 0;
-	for (const int pairs : PAIRS) {
-		smooth(workspace, pairs - done, smoothed);
-		smooth(workspace, pairs - done, smoothed_probed);
-		done = pairs;
-		workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
-			moves[i] = (smoothed[i] - positions[i]).dot(normals[i]);
-			moves_probed[i] = (smoothed_probed[i] - probed[i]).dot(normals[i]);
-		});
-		const auto square = [&](std::size_t a, std::size_t b) {
-			return (moves[a] - moves[b]) * (moves[a] - moves[b]);
-		};
-		const double squares = sum_over_edges(workspace, inner, square);
-		if (!(squares > 0))
-			continue;
-		const double of_probe = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
-			return (moves_probed[a] - moves_probed[b]) * (left[b] - left[a]);
-		});
-		const auto product = [&](std::size_t a, std::size_t b) {
-			const double move = moves[a] - moves[b];
-			const double follows = moves_probed[a] - moves_probed[b] - move;
-			const double noise = sigma * (probe.noise_at(a) - probe.noise_at(b));
-			return move * (taken[a] - taken[b]) - variance * noise * follows;
-		};
-		const double of_taken = sum_over_edges(workspace, inner, product);
-		// Edges between two faces are met twice.
-		const double scatter = sum_over_edges(workspace, inner, [&](std::size_t a, std::size_t b) {
-			const double rest = product(a, b) - of_taken / squares * square(a, b);
-			return 2 * rest * rest;
-		});
-		const double certain = of_taken - RELATED_TERMS * std::sqrt(scatter);
-		// Less than all of it comes about by noise that is not white, too.
-		const double of_own = certain >= squares ? certain : 0;
-		const double least = std::max(UNDERSTATED * of_probe, of_own) / squares;
-		const double share = way_between(SHARE_OF_EDGES, SHARE_OF_DETAIL, least) *
-							 std::max(0.0, std::min(1.0, least));
-		const double gain = share * (2 * least - share) * squares;
-		if (gain > most) {
-			most = gain;
-			best = {pairs, share};
-		}
-	}
-	return best;
+	return Chooser(workspace, probe, responses, positions, inner).choose();
 }
 
 void smooth_finally(

@@ -20,10 +20,11 @@ struct FinalSmoothing {
 /// Where surfaces curve a method is left with few faces to average over, so that its result is
 /// rougher than the surface; where they have edges, smoothing costs more than it gains. This
 /// chooses what leaves the least square error of the vertices' distances along the normals, as they
-/// differ over the edges, which is what normals go by. The error is what the method leaves of a
-/// probe, which is known. What it makes of its own, such as facets, it would make of the probe
-/// again: that goes by what was taken from the measured mesh (Stein's unbiased estimate, 1981),
-/// where it is certain that all of the smoothing would not be too much.
+/// differ over the edges, which is what normals go by; of a broad smoothing no more than leaves the
+/// least in the distances themselves, too. The error is what the method leaves of a probe, which is
+/// known. What it makes of its own, such as facets, it would make of the probe again: that goes by
+/// what was taken from the measured mesh (Stein's unbiased estimate, 1981), where it is certain
+/// that all of the smoothing would not be too much.
 ///
 /// @param workspace its mesh as measured
 /// @param probe     of the result

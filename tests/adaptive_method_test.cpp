@@ -455,6 +455,21 @@ TEST_CASE("What is taken of noise alone is all of it", "[adaptive_method][slow]"
 	CHECK(errors_of(rippled, torus).mean_angle < 0.25 * before);
 }
 
+TEST_CASE("Noise that was smoothed is not left rough", "[adaptive_method][slow]")
+{
+	// The larger one in places.
+	for (const auto& [faces, left] : {std::pair<Index, double>(30000, 0.033), {120000, 0.0245}}) {
+		CAPTURE(faces);
+		const TriangleMesh truth = make_torus(faces);
+		const TriangleMesh mesh = hardly_smoothed(noisy(truth, 0.3));
+		const ErrorMeasures before = measure(mesh, truth);
+		const ErrorMeasures after = errors_of(mesh, truth);
+		CAPTURE(before.mean_angle, after.mean_angle, before.vertex_error, after.vertex_error);
+		CHECK(after.mean_angle < left * before.mean_angle);
+		CHECK(after.vertex_error < 0.16 * before.vertex_error);
+	}
+}
+
 TEST_CASE(
 	"Noise that was smoothed is tried out in places of a large mesh", "[adaptive_method][slow]")
 {

@@ -224,7 +224,7 @@ TEST_CASE(
 	std::vector<Point> positions = here.positions;
 	smooth_finally(f.workspace, here.choice(), positions);
 	for (std::size_t i = 0; i < fixed.fixed.size(); i += 3) {
-		REQUIRE(probe.signs()[i] == 0);
+		REQUIRE(probe.draws()[i] == 0);
 		REQUIRE(positions[i] == here.positions[i]);
 	}
 

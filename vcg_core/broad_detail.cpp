@@ -47,7 +47,7 @@ BroadDetail::BroadDetail(
 		kept_(positions.size())
 {
 	for (std::size_t i = 0; i < kept_.size(); ++i)
-		kept_[i] = {moves_.lengths[i], probe.signs()[i]};
+		kept_[i] = {moves_.lengths[i], probe.draws()[i]};
 	low_pass(workspace, PAIRS, kept_);
 }
 
@@ -76,7 +76,7 @@ double BroadDetail::share_followed(
 BroadDetail::Products BroadDetail::products(std::size_t vertex) const
 {
 	const double kept = kept_[vertex][0];
-	const double noise = is_probed(vertex) ? probe_.signs()[vertex] * kept_[vertex][1] : 0;
+	const double noise = is_probed(vertex) ? probe_.draws()[vertex] * kept_[vertex][1] : 0;
 	return {moves_.lengths[vertex] * kept, noise, kept * kept};
 }
 

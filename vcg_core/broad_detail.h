@@ -45,7 +45,7 @@ private:
 	/// Where the probe says something: edges take no part.
 	bool is_probed(std::size_t vertex) const
 	{
-		return probe_.signs()[vertex] != 0 && moves_.lengths[vertex] != 0;
+		return probe_.draws()[vertex] != 0 && moves_.lengths[vertex] != 0;
 	}
 	/// Of the values of those vertices that have faces.
 	template<class Value>

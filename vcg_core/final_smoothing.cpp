@@ -32,6 +32,10 @@ constexpr double UNDERSTATED = 1.5;
 constexpr double SHARE_OF_EDGES = 0.2;
 constexpr double SHARE_OF_DETAIL = 0.4;
 
+// So many times these where noise goes together: it rounds edges, which a method then leaves where
+// the probe, put on edges that it made, tells nothing of.
+constexpr double ROUNDED = 2;
+
 // The terms of what goes by what was taken go together over some edges, so that their sum is by so
 // much less certain than that of as many terms of no relation: 1.5 to 2 measured by summing over
 // blocks.
@@ -85,7 +89,8 @@ public:
 				continue;
 			const double least =
 				std::max(UNDERSTATED * least_of_probe(), least_of_own(variance, squares)) / squares;
-			double share = way_between(SHARE_OF_EDGES, SHARE_OF_DETAIL, least) *
+			const double rounded = probe_.is_white() ? 1 : ROUNDED;
+			double share = way_between(rounded * SHARE_OF_EDGES, rounded * SHARE_OF_DETAIL, least) *
 						   std::max(0.0, std::min(1.0, least));
 			if (pairs > MOST_PAIRS_BY_EDGES)
 				share = std::min(share, std::max(0.0, UNDERSTATED * share_by_distances()));
@@ -170,9 +175,12 @@ private:
 	}
 
 	// The same of what the method made, by what was taken; 0 where it is not certain that this is
-	// all of the squares. Less than that comes about by noise that is not white, too.
+	// all of the squares. Less than that comes about by noise that is not white, too, so that it
+	// tells nothing of noise that goes together.
 	double least_of_own(double variance, double squares) const
 	{
+		if (!probe_.is_white())
+			return 0;
 		const auto product = [&](std::size_t a, std::size_t b) {
 			const double move = moves_[a] - moves_[b];
 			const double follows = moves_of_probed_[a] - moves_of_probed_[b] - move;

@@ -24,7 +24,7 @@ struct FinalSmoothing {
 /// least in the distances themselves, too. The error is what the method leaves of a probe, which is
 /// known. What it makes of its own, such as facets, it would make of the probe again: that goes by
 /// what was taken from the measured mesh (Stein's unbiased estimate, 1981), where it is certain
-/// that all of the smoothing would not be too much.
+/// that all of the smoothing would not be too much and the noise is white.
 ///
 /// @param workspace its mesh as measured
 /// @param probe     of the result

@@ -37,7 +37,8 @@ MeshNoise estimate_mesh_noise(
 	if (options.noise_type != NoiseType::White) {
 		const bool scanner = options.noise_type == NoiseType::Scanner;
 		found = measure_noise_correlation(workspace, measured, smooth, scanner);
-		noise.correlation = {scanner ? 1 : even * found.certainty(), found.reach()};
+		noise.of_grid = found.certainty();
+		noise.correlation = {scanner ? 1 : even * noise.of_grid, found.reach()};
 		if (levels.rounding > 0 && !scanner)
 			noise.correlation.share = way_between(FINE_ROUNDING, COARSE_ROUNDING, levels.rounding);
 		else {

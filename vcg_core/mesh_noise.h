@@ -22,6 +22,9 @@ struct Correlation {
 /// What noise a mesh has: how much, and of what kinds.
 struct MeshNoise {
 	Correlation correlation;
+	/// From 0 to 1: how surely the mesh shows where noise that goes together comes from, the grid
+	/// of a depth camera or a volume.
+	double of_grid = 0;
 	/// Its factors are empty where the noise is the same everywhere.
 	UnevenNoise uneven;
 	/// Its share is zero where outliers do not make the noise.

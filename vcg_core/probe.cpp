@@ -2,9 +2,11 @@
 #include "probe.h"
 
 #include "local_heights.h"
+#include "moves.h"
 #include "sampling.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace orthopoly {
 
@@ -13,28 +15,82 @@ namespace {
 // A response beyond so many times the probe is another choice of the method's, which says nothing.
 constexpr double LARGEST_RESPONSE = 2;
 
+// How far an average moves a value to the mean around it: it raises the correlation over an edge by
+// some hundredths. And how many there are at most: noise that goes together as that of
+// reconstructions does takes some twenty.
+constexpr double AVERAGE_SHARE = 0.15;
+constexpr int MOST_AVERAGES = 200;
+
+double edge_correlation_of(const Workspace& workspace, const std::vector<double>& values)
+{
+	const auto over_edges = [&](const auto& value) {
+		return workspace.execution.sum(workspace.mesh.face_count(), [&](Index index) {
+			const Face& face = workspace.mesh.faces[at(index)];
+			double sum = 0;
+			for (std::size_t k = 0; k < 3; ++k)
+				sum += value(values[at(face[k])], values[at(face[(k + 1) % 3])]);
+			return sum;
+		});
+	};
+	const double squares = over_edges([](double a, double b) { return (a * a + b * b) / 2; });
+	return squares > 0 ? over_edges([](double a, double b) { return a * b; }) / squares : 1;
+}
+
+// Averages values until they go together so far over an edge, and scales them to a mean square of
+// 1; zeros stay.
+void correlate(const Workspace& workspace, double correlation, std::vector<double>& values)
+{
+	const std::vector<double> drawn = values;
+	for (int k = 0; k < MOST_AVERAGES && edge_correlation_of(workspace, values) < correlation;
+		 ++k) {
+		std::vector<double> means = values;
+		average(workspace, 1, means);
+		workspace.execution.for_each(workspace.mesh.vertex_count(), [&](std::size_t i) {
+			if (drawn[i] != 0)
+				values[i] += AVERAGE_SHARE * (means[i] - values[i]);
+		});
+	}
+	double squares = 0;
+	double count = 0;
+	for (std::size_t i = 0; i < values.size(); ++i) {
+		squares += values[i] * values[i];
+		count += drawn[i] != 0 ? 1 : 0;
+	}
+	if (!(squares > 0))
+		return;
+	const double scale = std::sqrt(count / squares);
+	for (double& value : values)
+		value *= scale;
+}
+
 } // namespace
 
 Probe::Probe(
-	const Workspace& workspace, const Deviations& noise, const std::vector<Point>& positions) :
+	const Workspace& workspace,
+	const Deviations& noise,
+	const std::vector<Point>& positions,
+	double edge_correlation) :
 		workspace_(workspace),
 		noise_(noise), normals_(vertex_normals(workspace, positions)),
-		signs_(signs_by_value(areas_around(workspace, workspace.mesh.positions)))
+		draws_(signs_by_value(areas_around(workspace, workspace.mesh.positions))),
+		is_white_(!(edge_correlation > 0))
 {
-	for (std::size_t i = 0; i < signs_.size(); ++i) {
+	for (std::size_t i = 0; i < draws_.size(); ++i) {
 		if (normals_[i].isZero(0) || workspace.mesh.is_fixed(static_cast<Index>(i)))
-			signs_[i] = 0;
+			draws_[i] = 0;
 	}
+	if (!is_white_)
+		correlate(workspace, edge_correlation, draws_);
 }
 
 std::vector<Point> Probe::with_probe(const std::vector<Point>& positions) const
 {
 	std::vector<Point> probed = workspace_.mesh.positions;
 	for (std::size_t i = 0; i < probed.size(); ++i) {
-		if (signs_[i] == 0)
+		if (draws_[i] == 0)
 			continue;
 		const double back = (positions[i] - probed[i]).dot(normals_[i]);
-		probed[i] += (back + noise_[i] * signs_[i]) * normals_[i];
+		probed[i] += (back + noise_[i] * draws_[i]) * normals_[i];
 	}
 	return probed;
 }

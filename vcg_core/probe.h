@@ -17,23 +17,30 @@ namespace orthopoly {
 /// follows a little more noise than there is otherwise).
 class Probe {
 public:
-	/// @param workspace its mesh as measured; has to outlive this
-	/// @param noise     that was taken, in the caller's length unit; > 0
-	/// @param positions #V denoised, whose normals the probe moves vertices along
-	Probe(const Workspace& workspace, const Deviations& noise, const std::vector<Point>& positions);
+	/// @param workspace        its mesh as measured; has to outlive this
+	/// @param noise            that was taken, in the caller's length unit; > 0
+	/// @param positions        #V denoised, whose normals the probe moves vertices along
+	/// @param edge_correlation of the noise of vertices that an edge joins; 0 for white noise
+	Probe(
+		const Workspace& workspace,
+		const Deviations& noise,
+		const std::vector<Point>& positions,
+		double edge_correlation = 0);
 
 	/// #V denoised, with the probe along the normals. Across these vertices are where they were
 	/// measured, so that triangles are as uneven as they were.
 	std::vector<Point> with_probe(const std::vector<Point>& positions) const;
 
-	/// #V signs; zero for fixed vertices and such without a normal, which the probe leaves alone.
-	const std::vector<double>& signs() const { return signs_; }
+	/// #V signs, or for noise that goes together averages of such with a mean square of 1; zero for
+	/// fixed vertices and such without a normal, which the probe leaves alone.
+	const std::vector<double>& draws() const { return draws_; }
+	bool is_white() const { return is_white_; }
 	/// #V unit normals, or zero.
 	const std::vector<Point>& normals() const { return normals_; }
 	/// As given.
 	const Deviations& noise() const { return noise_; }
-	/// A vertex's sign times its deviation, over the overall one.
-	double noise_at(std::size_t vertex) const { return noise_.factor(vertex) * signs_[vertex]; }
+	/// A vertex's draw times its deviation, over the overall one.
+	double noise_at(std::size_t vertex) const { return noise_.factor(vertex) * draws_[vertex]; }
 
 	/// What the method leaves of the probe, in units of its overall deviation: #V.
 	///
@@ -49,7 +56,8 @@ private:
 	const Workspace& workspace_;
 	Deviations noise_;
 	std::vector<Point> normals_;
-	std::vector<double> signs_;
+	std::vector<double> draws_;
+	bool is_white_;
 };
 
 } // namespace orthopoly

@@ -726,6 +726,10 @@ TEST_CASE("Rounded coordinates are smoothed, terraces too", "[adaptive_method]")
 			result.resolved.noise_type ==
 			(bound.step > 0.7 ? NoiseType::Scanner : NoiseType::White));
 	}
+	// Where it is a sphere, it is not left rough.
+	const TriangleMesh sphere = make_sphere(8000);
+	const TriangleMesh stepped = rounded(sphere, 1.0);
+	CHECK(errors_of(stepped, sphere).mean_angle < 0.028 * measure(stepped, sphere).mean_angle);
 	// What is taken of terraces differs from plane to plane, and stays off.
 	const TriangleMesh part = make_part(12000);
 	const TriangleMesh terraced = rounded(part, 1.0);

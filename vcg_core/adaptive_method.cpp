@@ -135,6 +135,15 @@ std::optional<AdaptiveRun> run_at(
 	return run_adaptively(workspace, plan, factors, positions);
 }
 
+// Gives back what a run for noise that goes together took of detail. What rounding leaves is not
+// alike everywhere: nothing on planes along an axis.
+void give_back_detail_taken(
+	const Workspace& workspace, const MeshNoise& noise, std::vector<Point>& positions)
+{
+	if (noise.correlation.share > 0 && noise.rounding == 0)
+		give_back_uneven(workspace, noise.correlation.share, positions);
+}
+
 // How far noise that a run took goes together over an edge.
 double edge_correlation_of_noise(const Workspace& workspace, const std::vector<Point>& positions)
 {
@@ -165,8 +174,7 @@ void finish(
 		const double its_level = level_in(its_workspace, workspace, level);
 		const AdaptivePlan plan = plan_at(its_level, planned_for, correlation, options);
 		std::vector<Point> result = denoised(its_workspace, plan, its_factors);
-		if (!is_white)
-			give_back_uneven(its_workspace, correlation.share, result);
+		give_back_detail_taken(its_workspace, noise, result);
 		return result;
 	};
 	const auto responses_to =
@@ -225,9 +233,8 @@ void lower_and_run(
 	double& level = *result.resolved.noise_level;
 	std::optional<AdaptiveRun> last = run(strength * level);
 	if (noise.correlation.share > 0) {
-		// What rounding leaves is not alike everywhere: nothing on planes along an axis.
-		if (last && noise.rounding == 0) {
-			give_back_uneven(workspace, noise.correlation.share, positions);
+		if (last) {
+			give_back_detail_taken(workspace, noise, positions);
 			finish(
 				strength * level * noise.seen, last->sigma, noise, workspace, options, positions);
 		}

@@ -70,6 +70,15 @@ struct Halfway {
 		return measure(with_positions(truth, its_positions), truth);
 	}
 
+	/// Checks that smoothing leaves less than these times of both errors.
+	void check_smoothed(double angle, double vertex_error) const
+	{
+		const ErrorMeasures before = errors(positions);
+		const ErrorMeasures after = errors(smoothed());
+		CHECK(after.mean_angle < angle * before.mean_angle);
+		CHECK(after.vertex_error < vertex_error * before.vertex_error);
+	}
+
 	TriangleMesh truth;
 	std::vector<double> factors;
 	StepFixture f;
@@ -115,10 +124,7 @@ TEST_CASE("What a method left rough is smoothed in the end", "[final_smoothing]"
 		CAPTURE(way);
 		const Halfway method(make_sphere(8000), way);
 		CHECK(method.choice().share > 0.9);
-		const ErrorMeasures before = method.errors(method.positions);
-		const ErrorMeasures after = method.errors(method.smoothed());
-		CHECK(after.mean_angle < 0.5 * before.mean_angle);
-		CHECK(after.vertex_error < 0.8 * before.vertex_error);
+		method.check_smoothed(0.5, 0.8);
 	}
 }
 
@@ -144,10 +150,7 @@ TEST_CASE("What is left broad is smoothed by many pairs", "[final_smoothing]")
 		Halfway method(make_sphere(20000), way);
 		method.make_broad();
 		CHECK(method.choice().pairs > 20);
-		const ErrorMeasures before = method.errors(method.positions);
-		const ErrorMeasures after = method.errors(method.smoothed());
-		CHECK(after.mean_angle < 0.4 * before.mean_angle);
-		CHECK(after.vertex_error < 0.8 * before.vertex_error);
+		method.check_smoothed(0.4, 0.8);
 	}
 }
 
@@ -158,10 +161,7 @@ TEST_CASE("Many pairs are not bought with the shape", "[final_smoothing]")
 		CAPTURE(edges, height);
 		Halfway method(bumpy_sphere(20000, edges, height), 0.8);
 		method.make_broad();
-		const ErrorMeasures before = method.errors(method.positions);
-		const ErrorMeasures after = method.errors(method.smoothed());
-		CHECK(after.mean_angle < 0.8 * before.mean_angle);
-		CHECK(after.vertex_error < before.vertex_error);
+		method.check_smoothed(0.8, 1);
 	}
 }
 

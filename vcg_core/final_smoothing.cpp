@@ -111,21 +111,11 @@ private:
 
 	bool counts(std::size_t vertex) const { return inner_.empty() || inner_[vertex] != 0; }
 
-	// Over the edges of the faces, each edge that two faces share being met twice.
 	template<class Value>
 	double over_edges(const Value& value) const
 	{
-		const std::vector<Face>& faces = workspace_.mesh.faces;
-		return workspace_.execution.sum(workspace_.mesh.face_count(), [&](Index index) {
-			const Face& face = faces[at(index)];
-			double sum = 0;
-			for (std::size_t k = 0; k < 3; ++k) {
-				const std::size_t from = at(face[k]);
-				const std::size_t to = at(face[(k + 1) % 3]);
-				if (counts(from) && counts(to))
-					sum += value(from, to);
-			}
-			return sum;
+		return sum_over_edges(workspace_, [&](std::size_t from, std::size_t to) {
+			return counts(from) && counts(to) ? value(from, to) : 0.0;
 		});
 	}
 

@@ -67,6 +67,21 @@ void average(const Workspace& workspace, int times, std::vector<Value>& values)
 std::vector<double>
 mean_squares(const Workspace& workspace, int times, const std::vector<double>& values);
 
+/// Sums value(from, to) over the edges of the faces, each edge that two faces share being met
+/// twice.
+template<class Value>
+double sum_over_edges(const Workspace& workspace, const Value& value)
+{
+	const std::vector<Face>& faces = workspace.mesh.faces;
+	return workspace.execution.sum(workspace.mesh.face_count(), [&](Index index) {
+		const Face& face = faces[at(index)];
+		double sum = 0;
+		for (std::size_t k = 0; k < 3; ++k)
+			sum += value(at(face[k]), at(face[(k + 1) % 3]));
+		return sum;
+	});
+}
+
 /// Keeps what is broad of #V values: so many pairs of Taubin's filter (see prefilter.h).
 template<class Value>
 void low_pass(

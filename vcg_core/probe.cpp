@@ -23,17 +23,12 @@ constexpr int MOST_AVERAGES = 200;
 
 double edge_correlation_of(const Workspace& workspace, const std::vector<double>& values)
 {
-	const auto over_edges = [&](const auto& value) {
-		return workspace.execution.sum(workspace.mesh.face_count(), [&](Index index) {
-			const Face& face = workspace.mesh.faces[at(index)];
-			double sum = 0;
-			for (std::size_t k = 0; k < 3; ++k)
-				sum += value(values[at(face[k])], values[at(face[(k + 1) % 3])]);
-			return sum;
-		});
-	};
-	const double squares = over_edges([](double a, double b) { return (a * a + b * b) / 2; });
-	return squares > 0 ? over_edges([](double a, double b) { return a * b; }) / squares : 1;
+	const double squares = sum_over_edges(workspace, [&](std::size_t a, std::size_t b) {
+		return (values[a] * values[a] + values[b] * values[b]) / 2;
+	});
+	const double products = sum_over_edges(
+		workspace, [&](std::size_t a, std::size_t b) { return values[a] * values[b]; });
+	return squares > 0 ? products / squares : 1;
 }
 
 // Averages values until they go together so far over an edge, and scales them to a mean square of
